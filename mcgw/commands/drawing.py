@@ -122,11 +122,11 @@ def run(
 def _tell_before(scene: "Scene", expected: "Forecast", *, ruled: bool, shared: bool) -> None:
     """Say what a rule needs, or how long the run will take, if more than a minute."""
     from mcgw.ensemble.forecast import before
-    from mcgw.ensemble.simulation import in_words, seconds_for, seconds_per_surface
+    from mcgw.ensemble.simulation import in_words, rough_seconds, seconds_per_surface
     from mcgw.sampling.samplers import sampler_of
 
     sampler, m = sampler_of(scene), scene.n_surfaces
-    if not ruled and (seconds := seconds_for(scene, sampler, m, at_least=_LONG / 4)) >= _LONG:
+    if not ruled and (seconds := rough_seconds(scene, m)) >= _LONG:
         notes(
             f"{m:g} surfaces of {scene.n_asperities:g} asperities: about {in_words(seconds)} on this machine "
             f"({sampler.draws * m:.2g} draws); Ctrl-C keeps finished work; details: mcgw show --plan"

@@ -15,7 +15,6 @@ import numpy as np
 
 from analytic import quantity_of
 from mcgw.ensemble.results import CHUNK_ROWS, Results, Tables, joined
-from mcgw.errors import StoreError
 from mcgw.machine.in_threads import in_threads, pieces
 from mcgw.machine.memory import check_memory
 from mcgw.sampling.block import Source, Sums
@@ -32,7 +31,6 @@ _MOST_WORDS = 20_000_000  # numbers a block may hold
 _DRAWS = 1.5e8  # asperities a block may draw, so that a bar moves every second
 _FILE_BYTES = 2**23  # of a block of a file: large enough that its flushing costs little
 _FILE_DRAWS = 4e8  # numbers drawn for such a block: a second or so
-_MOST = 2**63 - 1
 _PIECE_ROWS = 2**13  # surfaces whose values lie in memory at once
 _PIECE_BYTES = 2**26  # of these values
 _PIECE_DRAWS = 1e9  # numbers drawn for a block: what an interruption may cost
@@ -163,20 +161,15 @@ class Values:
         StoreError
             With the numbers.
         """
-        scene, n, k = self.scene, self.scene.n_surfaces, len(self.scene.separations)
-        if surfaces is not None:
-            what = f"ensemble.n_surfaces = {surfaces}: {len(scene.quantities)} quantities at {k} separations"
-            check_memory(what, 2 * 8 * surfaces * scene.width)  # the blocks, and all of them joined
-            return
-        for what, value in (
-            ("n_surfaces * n_asperities", n * scene.n_asperities),
-            ("n_surfaces * n_asperities * separations", n * scene.n_asperities * k),
-            ("bytes of the file", self.disk // 2),
-        ):
-            if value > _MOST:
-                raise StoreError(f"ensemble: {what} = {value:.4g} is more than 2^63 - 1; reduce the scene")
-        rows = min(self.rows, n)
-        check_memory(f"contact.separations: a block of {rows} surfaces", 3 * 8 * rows * scene.width)
+        scene = self.scene
+        if surfaces is None:
+            rows = min(self.rows, scene.n_surfaces)
+            return check_memory(
+                f"contact.separations: a block of {rows} surfaces", 3 * 8 * rows * scene.width
+            )
+        held = f"{len(scene.quantities)} quantities at {len(scene.separations)} separations"
+        # The blocks, and all of them joined.
+        return check_memory(f"ensemble.n_surfaces = {surfaces}: {held}", 2 * 8 * surfaces * scene.width)
 
 
 class Statistics(Values):
@@ -185,10 +178,8 @@ class Statistics(Values):
     @cached_property
     def rows(self) -> int:
         """Surfaces of a block: a power of two of pieces."""
-        rows = self._piece
-        while 2 * rows <= min(_MOST_ROWS, _PIECE_DRAWS / (self.sampler.draws + 1)):
-            rows *= 2
-        return rows
+        most = min(_MOST_ROWS, _PIECE_DRAWS / (self.sampler.draws + 1))
+        return self._piece << max(int(np.log2(most / self._piece)), 0)
 
     @property
     def _piece(self) -> int:

@@ -6,6 +6,7 @@ And results as named arrays with axes, units and words, for files, xarray and pa
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -92,6 +93,21 @@ class Results(Held):
     """
 
     tables: Mapping[str, Any]
+
+    @classmethod
+    def of(cls, parts: Sequence[tuple[Callable[..., Array], int]], names: Iterable[str]) -> "Results":
+        """Return tables whose parts, each of some surfaces, are read by (name, start, stop) of their rows."""
+        total = sum(n for _, n in parts)
+
+        def read(name: str, rows: slice) -> Array:
+            found, (start, stop, _) = list[Array](), rows.indices(total)
+            for part, n in parts:
+                if max(start, 0) < min(stop, n):
+                    found.append(part(name, max(start, 0), min(stop, n)))
+                start, stop = start - n, stop - n
+            return found[0] if len(found) == 1 else np.concatenate(found)
+
+        return cls({name: Rows(total, partial(read, name)) for name in names})
 
     def rows(self) -> int:
         """Return the number of surfaces there are."""

@@ -8,12 +8,11 @@ reached, or no contact changes its piece.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from analytic import Quantity, quantity_of
-from analytic.arrays import Array, Ints, Marks, hold
+from analytic.arrays import Array, Ints, Marks
 from analytic.laws import Branch
 from analytic.roots import sign_changes
 from mcgw.scene.scene import Scene
@@ -22,6 +21,7 @@ Excess = Callable[[Array, Ints], Array]  # of separations, and of the numbers of
 _FINE = 1 / 64  # step of the search where moduli may be negative
 LOWEST = -40.0  # separation where searches end
 _CLOSE = 1e-14  # relative excess of a sum, which is its rounding error
+_NOWHERE = -1e3  # height in place of an asperity
 
 
 def crossing(excess: Excess, high: Array, lowest: float = LOWEST) -> Array:
@@ -47,107 +47,83 @@ def _of_some(excess: Excess, which: Ints) -> Excess:
 
 @dataclass(frozen=True, eq=False)
 class Asperities:
-    """Asperities of some surfaces of a scene, surface by surface.
+    """Asperities of some surfaces of a scene, a row for each surface.
 
     Parameters
     ----------
     scene : Scene
         Whose grading and contact law they have.
-    counts : ndarray of int
-        Asperities of each surface, shape (surfaces,).
     s : ndarray
-        Reduced heights, shape (asperities,).
+        Reduced heights in descending order, shape (surfaces, most of a surface); `_NOWHERE` after the last.
+    modulus : ndarray
+        E*(s)/E* of each; 1 there.
     ratios : ndarray or None
         Radii over that of the surface, where summits have their own.
     """
 
     scene: Scene
-    counts: Ints
     s: Array
+    modulus: Array
     ratios: Array | None = None
 
     @classmethod
-    def of(cls, scene: Scene, listed: Sequence[tuple[Array, Array | None]]) -> "Asperities":
-        """Return those of surfaces listed one by one: heights and, perhaps, radii of each."""
-        own = [ratios for _, ratios in listed if ratios is not None]
-        counts = np.array([s.size for s, _ in listed])
-        return cls(
-            scene, counts, np.concatenate([s for s, _ in listed]), np.concatenate(own) if own else None
-        )
+    def of(cls, scene: Scene, counts: Ints, s: Array, ratios: Array | None = None) -> "Asperities":
+        """Return those of surfaces listed one after the other, of which their numbers of asperities tell."""
+        inside = np.arange(max(counts.max(initial=0), 1)) < counts[:, None]
 
-    @cached_property
-    def modulus(self) -> Array:
-        """E*(s)/E* of each asperity."""
-        return np.asarray(self.scene.modulus(self.s))
+        def rows(values: Array, none: float) -> Array:
+            found = np.full(inside.shape, none)
+            found[inside] = values
+            return found
 
-    @cached_property
-    def owner(self) -> Ints:
-        """Number of the surface of each asperity."""
-        return np.repeat(np.arange(self.counts.size), self.counts)
+        tables = [rows(s, _NOWHERE), rows(np.asarray(scene.modulus(s)), 1.0)]
+        tables += [] if ratios is None else [rows(ratios, 1.0)]
+        order = np.argsort(-tables[0], axis=1)
+        return cls(scene, *(np.take_along_axis(each, order, axis=1) for each in tables))
 
-    @cached_property
-    def highest(self) -> Array:
-        """Height of the highest asperity of each surface; -inf without one."""
-        found = np.full(self.counts.size, -np.inf)
-        np.maximum.at(found, self.owner, self.s)
-        return found
-
-    @cached_property
-    def softest(self) -> Array:
-        """Height of the highest one of negative modulus on each surface, below which sums may rise."""
-        return self._only(self.modulus < 0).highest
+    def some(self, which: Ints | slice, most: int | None = None) -> "Asperities":
+        """Return some of the surfaces, or the highest asperities of them, so many at most."""
+        ratios = None if self.ratios is None else self.ratios[which, :most]
+        return Asperities(self.scene, self.s[which, :most], self.modulus[which, :most], ratios)
 
     def above(self, h: Array) -> "Asperities":
-        """Return the same surfaces, of which only the asperities above their separations are looked at."""
-        return self._only(self.s > h[self.owner])
+        """Return the same surfaces with all asperities above their separations, and perhaps more."""
+        return self.some(slice(None), max(int((self.s > h[:, None]).sum(axis=1).max(initial=0)), 1))
 
-    def some(self, which: Ints) -> "Asperities":
-        """Return some of the surfaces, by rising numbers."""
-        if which.size == self.counts.size:
-            return self
-        chosen = np.zeros(self.counts.size, dtype=bool)
-        chosen[which] = True
-        return self._only(chosen[self.owner], self.counts[which])
+    @property
+    def highest(self) -> Array:
+        """Height of the highest asperity of each surface."""
+        return self.s[:, 0]
 
-    def _only(self, which: Marks, counts: Ints | None = None) -> "Asperities":
-        ratios = None if self.ratios is None else self.ratios[which]
-        if counts is None:
-            counts = np.bincount(self.owner[which], minlength=self.counts.size)
-        found = Asperities(self.scene, counts, self.s[which], ratios)
-        hold(found, modulus=self.modulus[which])
-        return found
+    @property
+    def softest(self) -> Array:
+        """Height of the highest one of negative modulus on each surface, below which sums may rise."""
+        return np.asarray(np.where(self.modulus < 0, self.s, -np.inf).max(axis=1))
+
+    @property
+    def branch(self) -> Branch:
+        """That of all, each by the law of its own radius."""
+        return self.scene.ways.loading.with_radii(self.ratios)
 
     def terms(self, names: Sequence[str], h: Array) -> Array:
         """Return what asperities add to quantities, on loading, over the scale of each.
 
-        At the separation of each surface; of shape (quantities, asperities).
+        At the separation of each surface; of shape (quantities, surfaces, asperities).
         """
-        quantities, x = [quantity_of(name) for name in names], np.repeat(h, self.counts)
         if not self.scene.hertzian:
-            return self.branch(slice(None)).terms(names, x, self.s, self.modulus)
-        above = np.maximum(self.s - x, 0.0)
+            return self.branch.terms(names, h[:, None], self.s, self.modulus)
+        quantities, above = [quantity_of(name) for name in names], np.maximum(self.s - h[:, None], 0.0)
         powers = (above**q.exponent if q.exponent else (above > 0) * 1.0 for q in quantities)
         found = [self.modulus * y if q.modulus else y for q, y in zip(quantities, powers, strict=True)]
         if self.ratios is not None:
             found = [self.ratios**q.radius * y for q, y in zip(quantities, found, strict=True)]
         return np.asarray(found)
 
-    def branch(self, which: slice | Ints) -> Branch:
-        """Return that of some asperities, each by the law of its own radius."""
-        return self.scene.ways.loading.with_radii(None if self.ratios is None else self.ratios[which])
-
-    def added(self, terms: Array) -> Array:
-        """Return the sum of the terms of each surface."""
-        total, some = np.zeros(self.counts.size), self.counts > 0
-        if some.any():
-            total[some] = np.add.reduceat(terms, (np.cumsum(self.counts) - self.counts)[some])
-        return total
-
     def sums(self, names: Sequence[str], h: Array) -> dict[str, Array]:
         """Quantities of each surface at its separation, SI, shape (surfaces,)."""
-        on, scales = self.above(h), (quantity_of(name).scale(self.scene.surface) for name in names)
-        found = zip(names, scales, on.terms(names, h), strict=True)
-        return {name: scale * on.added(each) for name, scale, each in found}
+        scales = (quantity_of(name).scale(self.scene.surface) for name in names)
+        found = zip(names, scales, self.above(h).terms(names, h), strict=True)
+        return {name: scale * each.sum(axis=-1) for name, scale, each in found}
 
     def separations(
         self, q: Quantity, value: float, lowest: float, about: float | None = None, sunk: float | None = None
@@ -188,7 +164,7 @@ class Asperities:
         """Return where sums over their scale reach a goal above `low`; most are not far from `near`."""
         on, found, power = self.above(low), np.full(low.size, np.nan), 1 / max(q.exponent, 1.0)
         high = on.highest.copy()
-        falls = on.branch(slice(None)).falls(q.base, on.modulus) is None  # as a surface is lifted
+        falls = on.branch.falls(q.base, on.modulus) is None  # as a surface is lifted
         width = high - np.where(near < high, near, low)
 
         def excess(total: Array) -> Array:
@@ -222,8 +198,7 @@ class Asperities:
 
     def _total(self, q: Quantity, h: Array, which: Ints) -> Array:
         """Return a sum of some surfaces at their separations, over the scale."""
-        some = self.some(which)
-        return some.added(some.terms([q.name], h)[0])
+        return np.asarray(self.some(which).terms([q.name], h)[0].sum(axis=-1))
 
     def _bounds(self, q: Quantity, low: Array, high: Array, falls: bool) -> tuple[Array, Array, Marks]:
         """Return sums at `low`, their bounds up to `high`, and where the sum there is the bound and falls.
@@ -232,21 +207,20 @@ class Asperities:
         contact may jump, up or down: each is at most what it is at `low`, or where one of its pieces ends.
         """
         (terms,) = self.terms([q.name], low)
-        total, smooth = self.added(terms), np.ones(low.size, dtype=bool)
+        total = terms.sum(axis=-1)
         if falls:
-            return total, total, smooth
-        s, e, branch, none = self.s, self.modulus, self.branch(slice(None)), np.zeros(1)
-        first, last = (branch.pieces(x, s - x, e) for x in (np.repeat(h, self.counts) for h in (high, low)))
+            return total, total, np.ones(low.size, dtype=bool)
+        s, e, branch, none = self.s, self.modulus, self.branch, np.zeros(1)
+        first, last = (branch.pieces(h[:, None], s - h[:, None], e) for h in (high, low))
         if self.scene.ways.loading.value(q.base, 0, none, none, np.ones(1))[0]:  # contacts begin with a jump
             terms = np.where(first < 0, np.maximum(terms, 0.0), terms)
         else:
             first = np.maximum(first, 0)
-        changed = np.flatnonzero(first < last)
-        smooth[self.owner[changed]] = False
-        for j, limit in enumerate(self.branch(changed).limits(e[changed]) if changed.size else ()):
-            ends = (first[changed] <= j) & (j < last[changed])
-            here, limit = changed[ends], limit[ends]
-            weight = 1.0 if self.ratios is None else self.ratios[here] ** q.radius
-            at_end = self.branch(here).value(q.base, j, s[here] - limit, limit, e[here])
-            terms[here] = np.maximum(terms[here], weight * at_end)
-        return total, np.where(smooth, total, self.added(terms)), smooth
+        smooth = np.all(first >= last, axis=-1)
+        for j, limit in enumerate(() if smooth.all() else branch.limits(e)):
+            ends = (first <= j) & (j < last)
+            there = limit[ends]
+            weight = 1.0 if self.ratios is None else self.ratios[ends] ** q.radius
+            at_end = branch.of_some(ends).value(q.base, j, s[ends] - there, there, e[ends])
+            terms[ends] = np.maximum(terms[ends], weight * at_end)
+        return total, np.where(smooth, total, terms.sum(axis=-1)), smooth

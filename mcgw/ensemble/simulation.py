@@ -10,14 +10,13 @@ from mcgw.ensemble.drawing import block_size, drawn_blocks, reducer_of, use_thre
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import without_rule
 from mcgw.machine.progress import Progress, told
-from mcgw.sampling.block import Sampler, Source
+from mcgw.sampling.block import Source
 from mcgw.sampling.expected import expected
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene, storable, with_sampling
 
 _PER_COUNT, _PER_PRODUCT = 4e-8, 2.5e-10  # rough seconds per number and per pair, for statistics
 _SHORT = 0.01  # s; times below are given in milliseconds
-_TRIED = 0.05  # rough seconds per surface up to which a block is drawn on trial
 
 
 def simulate(
@@ -93,17 +92,6 @@ def seconds_per_surface(scene: Scene, sampler: Source[Any]) -> float:
         list(drawn_blocks(sampler, 0, n, size))
         times.append(perf_counter() - start)
     return float(np.median(times)) / n
-
-
-def seconds_for(scene: Scene, sampler: Sampler, surfaces: int, *, at_least: float = 0.0) -> float:
-    """Return the expected wall time of drawing some surfaces on this machine, s.
-
-    Measured on a trial block if surfaces are cheap, unless a rough estimate is below `at_least`.
-    """
-    rough = rough_seconds(scene, 1)
-    if rough * surfaces < at_least or rough > _TRIED:
-        return rough * surfaces
-    return surfaces * (seconds_per_surface(scene, sampler) + _for_statistics(scene))
 
 
 def rough_seconds(scene: Scene, surfaces: int) -> float:

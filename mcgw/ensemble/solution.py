@@ -250,7 +250,7 @@ class LoadedSurfaces:
         step = max(int(_AT_ONCE / (drawn.touching + 1)), 1)
         for first in range(0, drawn.n_surfaces, step):
             n = min(step, drawn.n_surfaces - first)
-            some = Asperities(self.scene, *summits_of_many(drawn, sampler, first, n))
+            some = Asperities.of(self.scene, *summits_of_many(drawn, sampler, first, n))
             parts.append([self._at(k, some, first) for k in range(len(self.values))])
             if tell is not None:
                 tell(first + n, drawn.n_surfaces)
@@ -264,12 +264,15 @@ class LoadedSurfaces:
 
         value, names, q = self.values[number], quantities_at(self.scene), self.given
         h = some.separations(q, value, self._begin[1][number], self.about[number], self.sunk)
-        softest, found = some.softest.copy(), some.sums(names, np.where(np.isfinite(h), h, np.inf))
+        softest, found = some.softest, some.sums(names, np.where(np.isfinite(h), h, np.inf))
         lost = np.flatnonzero(np.isnan(h))  # rare: they lie below what was drawn
         if lost.size:
-            whole = Asperities.of(self.scene, [summits(self.drawn, first + k) for k in lost.tolist()])
+            heights, own = zip(*(summits(self.drawn, first + k) for k in lost.tolist()), strict=True)
+            ratios = None if own[0] is None else np.concatenate(own)
+            counts = np.array([each.size for each in heights])
+            whole = Asperities.of(self.scene, counts, np.concatenate(heights), ratios)
             h[lost], softest[lost] = whole.separations(q, value, LOWEST, sunk=self.sunk), whole.softest
-            for k in lost[whole.counts == 0]:
+            for k in lost[counts == 0]:
                 raise ValueError(f"surface {first + k} has no asperity; increase n_asperities")
             for name, x in whole.sums(names, np.where(np.isnan(h), np.inf, h)[lost]).items():
                 found[name][lost] = x

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
@@ -10,12 +10,12 @@ from threading import Event
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from mcgw.ensemble.results import Labelled, Tables
+from mcgw.ensemble.results import Labelled, Results, Tables
 from mcgw.errors import RunError, StoppedError, StoreError, in_one_line
 from mcgw.formats.files import State, state_of
 from mcgw.jobs.executors import Signals, drive, heed_signals
-from mcgw.store.ensembles import described, open_ensemble, open_results, results_in
-from mcgw.store.h5_reading import read_tables
+from mcgw.store.ensembles import described, open_ensemble, open_results
+from mcgw.store.h5_reading import read_rows, read_tables
 from mcgw.store.identity import difference
 from mcgw.store.lock import locked, parts_of
 from mcgw.store.place import check_room, drop_leftovers, finished, put, remove_run, tidy
@@ -283,7 +283,8 @@ def _merged(plan: Plan, check: Callable[[], None]) -> Labelled:
     seconds += sum(shards.values())
     if not plan.statistics:
         files = [(plan.path, held)] * (held > 0) + [(plan.shard_path(span), span.n) for span in shards]
-        return plan.contents([results_in(files, plan.scene.tables)], seconds)
+        parts = [(partial(read_rows, path), n) for path, n in files]
+        return plan.contents([Results.of(parts, plan.scene.tables)], seconds)
 
     def blocks() -> Iterator[tuple[int, Tables]]:
         """Statistics of blocks, each with the group that it is of."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import Executor
+from functools import partial
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any, overload
@@ -9,12 +10,14 @@ from typing import TYPE_CHECKING, Any, overload
 from mcgw.ensemble.drawing import use_threads
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import checkpoints, forecast, without_rule
+from mcgw.ensemble.results import Results
 from mcgw.jobs.executors import share_of
 from mcgw.jobs.making import make
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene, storable
-from mcgw.store.ensembles import open_ensemble, open_sweep, results_in
+from mcgw.store.ensembles import open_ensemble, open_sweep
+from mcgw.store.h5_reading import read_rows
 from mcgw.store.place import as_recorded
 from mcgw.store.run_plan import Plan
 
@@ -118,7 +121,9 @@ def run(
         return left
     if scene.keep == "statistics":
         return open_ensemble(path)
-    return Ensemble(plan.scene, plan.sampler, results_in([(path, plan.total)], plan.scene.tables))
+    return Ensemble(
+        plan.scene, plan.sampler, Results.of([(partial(read_rows, path), plan.total)], plan.scene.tables)
+    )
 
 
 def _stages(scene: Scene, path: Path) -> Iterator[Scene]:

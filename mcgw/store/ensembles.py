@@ -3,16 +3,12 @@
 The sums of an ensemble where they lie: in its file, or in the blocks of a run in progress.
 """
 
-from collections.abc import Iterable, Sequence
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import GROUP, Held, Results, Rows
+from mcgw.ensemble.results import GROUP, Held, Results
 from mcgw.errors import StoreError
 from mcgw.formats.named_files import open_regular
 from mcgw.scene.scene import Scene
@@ -137,7 +133,9 @@ def open_results(path: Path) -> "Ensemble | Sweep":
         if plan.statistics:
             held = plan.reducers[0].held(read_tables(plan.shard_path(span)) for span in shards)
         else:
-            held = results_in([(plan.shard_path(span), span.n) for span in shards], plan.scene.tables)
+            held = Results.of(
+                [(partial(read_rows, plan.shard_path(x)), x.n) for x in shards], plan.scene.tables
+            )
         return Ensemble(plan.scene, plan.sampler, held)
     attributes, scene = described(path)
     if "axes" in attributes:
@@ -149,7 +147,7 @@ def open_results(path: Path) -> "Ensemble | Sweep":
 
         held = Summarised(scene.tables, pooled_from(read_tables(path, GROUP)))
     else:
-        held = results_in([(path, scene.n_surfaces)], scene.tables)
+        held = Results.of([(partial(read_rows, path), scene.n_surfaces)], scene.tables)
     return Ensemble(scene, str(attributes["sampler"]), held)
 
 
@@ -192,19 +190,3 @@ def verify(path: Path) -> tuple[str, str]:
         return "", str(look(path)["digest"])
     except StoreError as error:
         return str(error).removeprefix(f"{path}: "), "unreadable"
-
-
-def results_in(files: Sequence[tuple[Path, int]], names: Iterable[str]) -> Results:
-    """Return values of surfaces in files, each with its number of them, which are opened for each reading."""
-    ends = np.cumsum([0, *(n for _, n in files)])
-    total = int(ends[-1])
-
-    def read(name: str, rows: slice) -> NDArray[Any]:
-        parts, (start, stop, _) = [], rows.indices(total)
-        for (path, n), first in zip(files, ends.tolist(), strict=False):
-            low, high = max(start - first, 0), min(stop - first, n)
-            if low < high:
-                parts.append(read_rows(path, name, low, high))
-        return parts[0] if len(parts) == 1 else np.concatenate(parts)
-
-    return Results({name: Rows(total, partial(read, name)) for name in names})

@@ -8,22 +8,9 @@ what they are of.
 
 A chunk has a checksum, which HDF5 writes and checks: a changed chunk is an error, not a number. It is
 compressed where that saves half of it. Numbers of contacts shrink to an eighth; but for its first digits a
-load is noise, of which compression saves a sixth and makes the writing take 25 times as long. Of 1e4
-asperities and 41 separations, share of the bytes and megabytes of numbers a second, written and read by one
-thread (``runs/bench/compression.py``, on a busy machine):
-
-=====================  ================  ================  ===============================
-stored as              loads             contacts          load, area, stiffness, contacts
-=====================  ================  ================  ===============================
-as it is               1.00   965   911  1.00   981   962
-shuffle + LZF          0.86    83   230  0.14   189   293
-gzip 1                 0.91    38   153  0.26   108   295
-shuffle + gzip 1       0.82    39   151  0.13   209   442  0.65    55   234
-shuffle + gzip 2       0.82    35   171  0.13   221   452
-shuffle + gzip 4       0.82    41   193  0.13   124   258
-what shrinks by half                                       0.78   456   667
-=====================  ================  ================  ===============================
-
+load is noise, of which compression saves a sixth and makes the writing take 25 times as long. Of load, area,
+stiffness and contacts, all compressed are 0.65 of the bytes, at 55 MB of numbers a second and thread; where
+only what shrinks by half is compressed 0.78, at 456 MB/s (``runs/bench/compression.py`` measures every way).
 So a file is a fifth larger than if all were compressed, and written eight times as fast. Gzip, for netCDF,
 MATLAB and HDFView read it, and LZF only h5py.
 """

@@ -53,11 +53,6 @@ def written(scene: Scene) -> tuple[str, str]:
     return text, hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()
 
 
-def identity_of(*words: str) -> str:
-    """SHA-256 of all that the numbers of a surface depend on: scene or sweep, sampler, what draws."""
-    return hashlib.sha256("\0".join(words).encode()).hexdigest()
-
-
 def another(where: Path, kind: str, there: Question, here: Question) -> StoreError:
     """Return the error that a place holds something else."""
     what = difference(there, here)

@@ -198,7 +198,7 @@ def tidy(path: Path) -> None:
 def drop_leftovers(path: Path) -> None:
     """As `tidy`, for who has the lock; a run stays if it has a block that its file does not have."""
     folder, held = parts_of(path), 0
-    for left in (*folder.glob(".*.tmp"), *folder.glob("shards/.*.tmp")):
+    for left in folder.rglob(".*.tmp"):
         left.unlink(missing_ok=True)
     begun = (folder / RECORD).exists()  # without it nobody knows what the blocks are
     shards = list(folder.glob("shards/block-*.h5")) if begun else []

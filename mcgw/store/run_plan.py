@@ -12,6 +12,7 @@ not; its attributes are the identity of the run, the numbers of the surfaces, an
 of valid shards is the only record of progress.
 """
 
+import hashlib
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -30,7 +31,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from
 from mcgw.store.h5_reading import look
 from mcgw.store.h5_writing import BLOCK_TYPE, FILETYPE, FORMAT, RUN_TYPE, write
-from mcgw.store.identity import another, commit, identity_of, processor, versions, written
+from mcgw.store.identity import another, commit, processor, versions, written
 from mcgw.store.lock import parts_of, refuse_link
 
 if TYPE_CHECKING:
@@ -145,7 +146,8 @@ class Plan:
         else:
             self.text, self.axes = words = asked.texts()
             self.scene, self.sampler, self.of_all = scene_from(self.text), "", "\0".join(words)
-        self.identity, self.drawn_with = recorded or (identity_of(*words, draws), draws)
+        now = hashlib.sha256("\0".join((*words, draws)).encode()).hexdigest()
+        self.identity, self.drawn_with = recorded or (now, draws)
         self.question = self.text, self.axes, self.drawn_with  # what its numbers depend on, in words
         self.statistics = bool(self.axes) or self.scene.keep == "statistics"  # of no surface anything is kept
 

@@ -91,7 +91,7 @@ def solved_by_hand(law, given, value, heights=(2.0,), ratios=None, start=-3.0):
     """Separation at which listed asperities of one modulus have a load or area over its scale."""
     scene = mcgw.Scene(SURFACE, separations=0.0, law=law, n_surfaces=2, seed=1)
     own = None if ratios is None else np.array(ratios)
-    on = Asperities(scene, np.array([len(heights)]), np.array(heights), own)
+    on = Asperities.of(scene, np.array([len(heights)]), np.array(heights), own)
     (h,) = on.separations(quantity_of(given), value * SCALES[given], start)
     return h
 
