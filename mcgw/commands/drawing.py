@@ -23,7 +23,7 @@ from mcgw.commands.outputs import HDF5, details, news, notes
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from mcgw.ensemble.forecast import Forecast
+    from mcgw.ensemble.simulation import Forecast
     from mcgw.scene.scene import Scene
 
 _LONG = 60.0  # seconds; longer runs state their duration beforehand
@@ -92,7 +92,7 @@ def run(
     """
     from numba import get_num_threads
 
-    from mcgw.ensemble.forecast import after, forecast
+    from mcgw.ensemble.simulation import after, forecast
     from mcgw.formats.table import with_error
     from mcgw.jobs.running import run as drawn
 
@@ -121,8 +121,8 @@ def run(
 
 def _tell_before(scene: "Scene", expected: "Forecast", *, ruled: bool, shared: bool) -> None:
     """Say what a rule needs, or how long the run will take, if more than a minute."""
-    from mcgw.ensemble.forecast import before
-    from mcgw.ensemble.simulation import in_words, rough_seconds, seconds_per_surface
+    from mcgw.ensemble.drawing import seconds_per_surface
+    from mcgw.ensemble.simulation import before, in_words, rough_seconds
     from mcgw.sampling.samplers import sampler_of
 
     sampler, m = sampler_of(scene), scene.n_surfaces

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from analytic import PER_AREA
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.intervals import CONFIDENCE, interval_of
-from mcgw.ensemble.results import Held, Labelled
+from mcgw.ensemble.results import Held, Labelled, Variable
 from mcgw.formats.table import Shown, optional
 from mcgw.machine.terminal import brief, plotted, quantity_and_axes
 from mcgw.scene.scene import Scene
@@ -64,10 +64,12 @@ class Dataset(Shown):
             If xarray is not installed.
         """
         xarray, found = optional("xarray", "to_xarray"), self.labelled()
-        both = (
-            {name: (one.dims, one.values[:], one.about) for name, one in some.items()}
-            for some in (found.variables, found.coordinates)
-        )
+
+        def told(one: Variable) -> tuple[Any, ...]:
+            units = {"units": one.units} if one.units else {}
+            return one.dims, one.values[:], {**units, "long_name": one.long_name}
+
+        both = ({name: told(x) for name, x in some.items()} for some in (found.variables, found.coordinates))
         return xarray.Dataset(*both, self._about())
 
     def to_dataframe(self) -> Any:

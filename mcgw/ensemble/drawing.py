@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import cached_property, reduce
 from operator import add
+from time import perf_counter
 from typing import Any, TypeVar
 
 import numba
@@ -78,6 +79,19 @@ def block_size(scene: Scene, sampler: Source[Any]) -> int:
     return (size // GROUP // 4 * 4 + 2) * GROUP if size > GROUP else max(size, 1)
 
 
+def seconds_per_surface(scene: Scene, sampler: Source[Any]) -> float:
+    """Median wall time of drawing one surface in a block, after a warm-up."""
+    size = min(block_size(scene, sampler), 256)
+    n = size * numba.get_num_threads() if size > 1 else 1
+    list(drawn_blocks(sampler, 0, n, size))
+    times = []
+    for _ in range(3):
+        start = perf_counter()
+        list(drawn_blocks(sampler, 0, n, size))
+        times.append(perf_counter() - start)
+    return float(np.median(times)) / n
+
+
 @contextmanager
 def use_threads(threads: int | None) -> Iterator[None]:
     """Set the number of threads of the loops, at most those available."""
@@ -89,11 +103,6 @@ def use_threads(threads: int | None) -> Iterator[None]:
         yield
     finally:
         numba.set_num_threads(before)
-
-
-def always(_: float) -> bool:
-    """Return True: continue always."""
-    return True
 
 
 class Values:
@@ -136,7 +145,7 @@ class Values:
         """Approximate size of the file of so many surfaces, before compression."""
         return 8 * surfaces * self.scene.width
 
-    def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
+    def tables(self, first: int, stop: int, go_on: GoOn | None = None) -> Tables:
         """Return what is kept of a block or its beginning, whatever the number of threads.
 
         `go_on` is called after each piece that fits the memory.
@@ -145,7 +154,7 @@ class Values:
         for block in drawn_blocks(self.sampler, first, stop, block_size(self.scene, self.sampler)):
             parts.append(kept(self.scene, block))
             done += len(parts[-1][self.scene.quantities[0]])
-            if not go_on(done):
+            if go_on and not go_on(done):
                 break
         return joined(parts)
 
@@ -186,7 +195,7 @@ class Statistics(Values):
         most = _PIECE_DRAWS / (self.sampler.draws + 1)
         return max(int(min(_PIECE_ROWS, _PIECE_BYTES // (8 * self.scene.width), most)), 1)
 
-    def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
+    def tables(self, first: int, stop: int, go_on: GoOn | None = None) -> Tables:
         """Return the statistics of a block."""
         from mcgw.ensemble.pooled import NUMBERS, Pooled, tables_of  # for those scenes alone
 
@@ -196,15 +205,21 @@ class Statistics(Values):
             values = super().tables(start, end)
             table = np.concatenate([values[name] for name in self.scene.tables], axis=1)
             parts.append(Pooled.of_columns(NUMBERS, table))
-            if not go_on(end):
+            if go_on and not go_on(end):
                 break
         return tables_of([reduce(add, parts)])
 
     def held(self, blocks: Iterable[Tables]) -> Any:
         """All of them: whole blocks added up in their order, and the rest."""
-        from mcgw.ensemble.pooled import summarised  # as above
+        from mcgw.ensemble.pooled import Pooled, Summarised, pooled_from  # as above
 
-        return summarised(self.scene.tables, blocks, self.rows)
+        whole, rest = list[Pooled](), list[Pooled]()
+        for (block,) in map(pooled_from, blocks):
+            if block.n % self.rows:
+                rest = [block]
+            else:
+                whole = [reduce(add, [*whole, block])]
+        return Summarised(self.scene.tables, (*whole, *rest))
 
     def check(self, surfaces: int | None = None) -> None:  # noqa: ARG002
         """Refuse covariances that do not fit the memory."""

@@ -18,7 +18,6 @@ from mcgw.scene.writing import accuracy_facts, contact_facts
 MOST_SHOWN = 100  # separations in a table or figure beside theory
 _MOST_READ = 20_000_000  # numbers that are read for a short look; of more, only how many there are
 _AT = "mean +- stderr, d/sigma ="
-STATISTICS = ("mean", "std")  # of each quantity, kept in place of values, besides covariances
 _COLUMNS = ("column", "other_column")  # of the covariance
 
 
@@ -148,7 +147,7 @@ class Ensemble(Dataset):
         covariance = Variable(_COLUMNS, np.block(rows), "product of units", f"covariance of {order}")
         columns = Variable(("column",), np.arange(scene.width), "1", "quantity and separation")
         scales = {name: replace(columns, dims=(name,)) for name in _COLUMNS}
-        variables = {**statistics_of(self, scene.tables, STATISTICS), "covariance": covariance}
+        variables = {**statistics_of(self), "covariance": covariance}
         return Labelled(variables, {**axes, **scales}, drawn=tables_of(sums.parts))
 
     def _about(self) -> dict[str, Any]:

@@ -6,16 +6,15 @@ from typing import Any
 import numpy as np
 from scipy.special import ndtri
 
-from analytic.arrays import Array, Ints
+from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import CONFIDENCE
-from mcgw.ensemble.pooled import Pooled
+from mcgw.ensemble.pooled import PointResults, Pooled
 from mcgw.formats.table import SEPARATION, Column, Shown, Table
 from mcgw.machine.terminal import plotted
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import with_sampling
 
-Some = tuple[Ints, Array]  # numbers of pooled scenes, and their weights
 _PAIRED = ("surface", "separations", "heights", "n_asperities", "count", "seed")
 
 
@@ -195,38 +194,38 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
             f"a paired ratio needs two ensembles of the same surfaces; these differ in {', '.join(differ)}"
         )
     pooled, one = Pooled.of([{quantity: e.values(quantity)} for e in (numerator, denominator)]), np.ones(1)
-    both = (np.array([0]), one), (np.array([1]), one)
-    return ratio_of(pooled, quantity, *both, numerator.separations)
+    first, second = (PointResults(pooled, np.array([k]), one) for k in (0, 1))
+    return ratio_of(quantity, first, second, numerator.separations)
 
 
-def ratio_of(pooled: Pooled, quantity: str, first: Some, second: Some, separations: Array) -> Paired:
+def ratio_of(quantity: str, first: PointResults, second: PointResults, separations: Array) -> Paired:
     """Return the ratio of two means, first over second, over the surfaces that both share.
 
     The error is that of ``b - r a``, one combination: what both share cancels before it is rounded.
     """
-    b, a = pooled.mean(quantity, *first), pooled.mean(quantity, *second)
+    b, a = (each.mean_and_std(quantity)[0] for each in (first, second))
     ratio = b / np.where(a == 0, np.nan, a)  # without a contact there is none
-    between = difference_of(pooled, quantity, first, second, 1.0, ratio)
+    between = difference_of(quantity, first, second, 1.0, ratio)
     return Paired(quantity, separations, ratio, between.stderr / np.abs(a), between.gain)
 
 
 def difference_of(
-    pooled: Pooled, quantity: str, first: Some, second: Some, x: float | Array, y: float | Array
+    quantity: str, first: PointResults, second: PointResults, x: float | Array, y: float | Array
 ) -> Difference:
     """Return `x` times the first mean less `y` times the second, over the surfaces that both share.
 
     Its variance is that of one combination of scenes: nothing cancels.
     """
-    (one, v), (other, w) = first, second
-    scenes = np.union1d(one, other)
-    b, a = (pooled.variance(quantity, *some) for some in (first, second))
-    weights = np.zeros((len(scenes), *b.shape))
-    weights[np.searchsorted(scenes, one)] += np.multiply.outer(v, x * np.ones(b.shape))
-    weights[np.searchsorted(scenes, other)] -= np.multiply.outer(w, y * np.ones(b.shape))
+    pooled, (one, v), (other, w) = first.pooled, first.of(quantity), second.of(quantity)
+    scenes, unit = np.union1d(one, other), np.ones(pooled.means[quantity].shape[1:])
+    (b, d), (a, c) = (each.mean_and_std(quantity) for each in (first, second))
+    weights = np.zeros((len(scenes), *unit.shape))
+    weights[np.searchsorted(scenes, one)] += np.multiply.outer(v, x * unit)
+    weights[np.searchsorted(scenes, other)] -= np.multiply.outer(w, y * unit)
     together = np.maximum(pooled.variance(quantity, scenes, weights), 0.0)  # apart from rounding
-    value = x * pooled.mean(quantity, *first) - y * pooled.mean(quantity, *second)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return Difference(value, np.sqrt(together / pooled.n), (x**2 * b + y**2 * a) / together)
+        gain = ((x * d) ** 2 + (y * c) ** 2) / together
+    return Difference(x * b - y * a, np.sqrt(together / pooled.n), gain)
 
 
 def _same_asperities(one: Ensemble, other: Ensemble) -> bool:

@@ -5,7 +5,7 @@ with what, and that is fixed: blocks of a size that the scene decides are added 
 bits do not depend on who drew what, and when.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, reduce
 from itertools import pairwise
@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from analytic import quantity_of
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.results import Held, Tables
 from mcgw.machine.compiling import njit
@@ -167,6 +168,49 @@ def products_of(columns: Array) -> Array:
 
 
 @dataclass(frozen=True)
+class PointResults(Held):
+    """Mean and deviation of a point, a weighted mean of computed scenes.
+
+    Parameters
+    ----------
+    pooled : Pooled
+        Statistics of its group.
+    scenes : ndarray of int
+        Computed scenes of the group.
+    weights : ndarray
+        Of what the modulus enters; anything else is the same for all of them.
+    """
+
+    pooled: Pooled
+    scenes: Ints
+    weights: Array
+
+    no_more = (
+        "a sweep only keeps mean and standard deviation of a point; simulate(sweep.scene(point)) draws "
+        "surfaces of that scene"
+    )
+
+    def rows(self) -> int:
+        """Return the number of surfaces."""
+        return self.pooled.n
+
+    def at(self, which: Ints) -> "PointResults":
+        """Return the same at some of the separations, by their numbers."""
+        return PointResults(self.pooled.at(which), self.scenes, self.weights)
+
+    def of(self, quantity: str) -> tuple[Ints, Array]:
+        """Scenes and weights for one quantity."""
+        if len(self.scenes) == 1 or quantity_of(quantity).modulus:
+            return self.scenes, self.weights
+        return self.scenes[:1], np.ones(1)
+
+    def mean_and_std(self, name: str) -> tuple[Array, Array]:
+        """Mean and standard deviation (divisor M - 1)."""
+        some = self.of(name)
+        return self.pooled.mean(name, *some), np.sqrt(self.pooled.variance(name, *some))
+
+
+@dataclass(frozen=True)
 class Summarised(Held):
     """Mean, deviation and covariance of all numbers of a surface.
 
@@ -219,14 +263,3 @@ class Summarised(Held):
         """Between all numbers of two tables (divisor M - 1)."""
         a, b, m = self._columns(name), self._columns(other), self.rows()
         return np.asarray(self.whole.products[NUMBERS][np.ix_(a, b)][..., 0] / (m - 1 if m > 1 else np.nan))
-
-
-def summarised(names: tuple[str, ...], blocks: Iterable[Tables], size: int) -> Summarised:
-    """Return the statistics of some blocks: whole ones of a size added up in their order, and the rest."""
-    whole, rest = list[Pooled](), list[Pooled]()
-    for (block,) in map(pooled_from, blocks):
-        if block.n % size:
-            rest = [block]
-        else:
-            whole = [reduce(add, [*whole, block])]
-    return Summarised(names, (*whole, *rest))

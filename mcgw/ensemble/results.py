@@ -26,7 +26,7 @@ AXES = {  # of tables, in their order: unit and long name
     "surface": ("1", "number of the surface"),
     "separation": ("1", "mean-plane separation d/sigma"),
 }
-_WORDS = {
+STATISTICS = {  # of each quantity, kept in place of values, and what they are
     "mean": "mean of the {}",
     "std": "standard deviation of the {} over surfaces",
 }
@@ -166,11 +166,6 @@ class Variable:
     units: str
     long_name: str
 
-    @property
-    def about(self) -> dict[str, str]:
-        """Its attributes, as netCDF has them."""
-        return {**({"units": self.units} if self.units else {}), "long_name": self.long_name}
-
 
 @dataclass(frozen=True)
 class Labelled:
@@ -204,19 +199,13 @@ def axis(name: str, values: Any) -> Variable:
     return Variable((name,), np.asarray(values), *AXES[name])
 
 
-def statistics_of(
-    result: Any, names: Iterable[str], kinds: Sequence[str], lead: tuple[str, ...] = ()
-) -> dict[str, Variable]:
-    """Return what a result tells over its surfaces of some quantities, with axes before those of one."""
-    found: dict[str, Variable] = {}
-    scene = result.scenes[0] if lead else result.scene
-    for name in names:
-        q = scene.quantity(name)
-        for kind in kinds:
-            words = _WORDS[kind].format(q.long_name)
-            found[f"{name}_{kind}"] = Variable(
-                (*lead, "separation"), getattr(result, kind)(name), q.unit, words
-            )
+def statistics_of(result: Any, lead: tuple[str, ...] = ()) -> dict[str, Variable]:
+    """Return what a result tells over its surfaces, with axes before that of the separations."""
+    found, scene = dict[str, Variable](), result.scenes[0] if lead else result.scene
+    for q in map(scene.quantity, result.quantities):
+        for kind, words in STATISTICS.items():
+            values, dims = getattr(result, kind)(q.name), (*lead, "separation")
+            found[f"{q.name}_{kind}"] = Variable(dims, values, q.unit, words.format(q.long_name))
     return found
 
 

@@ -10,15 +10,7 @@ import signal
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    BrokenExecutor,
-    CancelledError,
-    Executor,
-    Future,
-    ProcessPoolExecutor,
-    wait,
-)
+from concurrent import futures
 from contextlib import contextmanager
 from importlib import import_module
 from typing import Any, TypeVar
@@ -80,7 +72,7 @@ def outcome(task: Callable[..., Any], *arguments: Any) -> tuple[Any, Exception |
 
 
 def drive(
-    executor: Executor,
+    executor: futures.Executor,
     blocks: Sequence[_Block],
     task: Callable[..., Any],
     arguments: Callable[[_Block], tuple[Any, ...]],
@@ -101,7 +93,7 @@ def drive(
     Exception
         As the task raises.
     """
-    todo, lost, running = deque(blocks), set[_Block](), dict[Future[Any], _Block]()
+    todo, lost, running = deque(blocks), set[_Block](), dict[futures.Future[Any], _Block]()
     in_hand = getattr(executor, "in_hand", in_hand)
     try:
         while (todo or running) and signals.number is None:
@@ -111,12 +103,12 @@ def drive(
                     running[executor.submit(outcome, task, *arguments(block))] = block
                 except Exception as refusal:
                     raise _no_more(_in_words(refusal)) from None
-            wait(running, timeout=0.2, return_when=FIRST_COMPLETED)
+            futures.wait(running, timeout=0.2, return_when=futures.FIRST_COMPLETED)
             for future in [one for one in running if one.done()]:
                 block = running.pop(future)
                 try:
                     result, error = future.result()
-                except CancelledError:  # by nobody here: not a worker, but its executor is lost
+                except futures.CancelledError:  # by nobody here: not a worker, but its executor is lost
                     raise _no_more(f"it dropped {block}") from None
                 except Exception as failure:
                     if block in lost:
@@ -154,7 +146,7 @@ def share_of(executor: Any, threads: int | None, shard: str | None) -> tuple[int
         raise ValueError(f"threads = {threads}: give a whole number >= 1")
     if shard is not None and executor is not None:
         raise ValueError(f"shard = {shard!r}: a share uses threads; leave executor out")
-    if not (executor is None or isinstance(executor, Executor)):
+    if not (executor is None or isinstance(executor, futures.Executor)):
         raise ValueError(
             f"executor = {executor!r}: give a concurrent.futures.Executor, such as "
             "ProcessPoolExecutor(8) or client.get_executor() of a dask client"
@@ -167,7 +159,7 @@ def share_of(executor: Any, threads: int | None, shard: str | None) -> tuple[int
     return int(number), int(of)
 
 
-class Jobs(Executor):
+class Jobs(futures.Executor):
     """Worker processes on this machine, one thread each; if one dies, all are replaced.
 
     Parameters
@@ -187,16 +179,16 @@ class Jobs(Executor):
         self.n, self.in_hand = n, n + 1
         self._pool = self._new_pool()
 
-    def _new_pool(self) -> ProcessPoolExecutor:
+    def _new_pool(self) -> futures.ProcessPoolExecutor:
         # Spawned: a fork would inherit locks of threads that it does not have.
         context = multiprocessing.get_context("spawn")
-        return ProcessPoolExecutor(self.n, mp_context=context, initializer=_begin_worker)
+        return futures.ProcessPoolExecutor(self.n, mp_context=context, initializer=_begin_worker)
 
-    def submit(self, task: Callable[..., Any], /, *arguments: Any, **options: Any) -> "Future[Any]":
+    def submit(self, task: Callable[..., Any], /, *arguments: Any, **options: Any) -> "futures.Future[Any]":
         """Submit a task to the next free process, of a new pool if the last one broke."""
         try:
             return self._pool.submit(task, *arguments, **options)
-        except BrokenExecutor:
+        except futures.BrokenExecutor:
             self._pool.shutdown(wait=False, cancel_futures=True)
             self._pool = self._new_pool()
             return self._pool.submit(task, *arguments, **options)
@@ -218,7 +210,7 @@ def _begin_worker() -> None:
 
 
 @contextmanager
-def dask_executor(address: str) -> Iterator[Executor]:
+def dask_executor(address: str) -> Iterator[futures.Executor]:
     """Yield the executor of a dask scheduler; it stays at work.
 
     Raises

@@ -51,8 +51,7 @@ def _drawn(plan: Plan, span: Span, threads: int | None, *go_on: Done) -> Callabl
         return lambda: None
     started = perf_counter()
     tables = plan.draw(span, threads, *go_on)
-    seconds = perf_counter() - started
-    return lambda: commit_shard(path, plan.identity, span, tables, seconds)
+    return partial(commit_shard, path, plan.identity, span, tables, perf_counter() - started)
 
 
 def make(
@@ -231,9 +230,9 @@ def merge(path: str | Path) -> "Ensemble | Sweep":
     """
     path = Path(path)
     tidy(path)
+    if not parts_of(path).exists() and path.exists():
+        return open_results(path)
     if not parts_of(path).exists():
-        if path.exists():
-            return open_results(path)
         raise StoreError(f"{path}: neither this file nor its blocks ({parts_of(path)}) exist")
     with heed_signals() as signals, locked(parts_of(path)):
         plan = Plan.open(parts_of(path))

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, overload
 
 from mcgw.ensemble.drawing import use_threads
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.forecast import checkpoints, forecast, without_rule
 from mcgw.ensemble.results import Results
+from mcgw.ensemble.simulation import checkpoints, forecast, without_rule
 from mcgw.jobs.executors import share_of
 from mcgw.jobs.making import make
 from mcgw.machine.progress import Progress, told
@@ -244,8 +244,7 @@ def sweep(
     array([1.71, 1.86, 1.93])
     """
     from mcgw.sweeps.axes import axes_of  # of which a run needs nothing
-    from mcgw.sweeps.groups import weighted
-    from mcgw.sweeps.points import Points
+    from mcgw.sweeps.points import Points, weighted
 
     check_object("sweep", scene, Scene)
     if path is None and not (executor is None and shard is None):

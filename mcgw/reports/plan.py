@@ -3,10 +3,9 @@
 from time import perf_counter
 
 from analytic import QUANTITIES
-from mcgw.ensemble.drawing import reducer_of
-from mcgw.ensemble.forecast import MOST_SURFACES, forecast
+from mcgw.ensemble.drawing import reducer_of, seconds_per_surface
 from mcgw.ensemble.intervals import laws_are_quick
-from mcgw.ensemble.simulation import in_words, rough_seconds, seconds_per_surface
+from mcgw.ensemble.simulation import MOST_SURFACES, forecast, in_words, rough_seconds
 from mcgw.machine.terminal import listed, one_line
 from mcgw.sampling.expected import Expected, expected
 from mcgw.sampling.shared import shared

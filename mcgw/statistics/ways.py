@@ -10,8 +10,8 @@ from math import ceil, inf, nan, sqrt
 
 from scipy.special import ndtri
 
-from mcgw.ensemble.forecast import MOST_SURFACES, forecast, surfaces_at_load
 from mcgw.ensemble.intervals import CONFIDENCE
+from mcgw.ensemble.simulation import MOST_SURFACES, forecast, surfaces_at_load
 from mcgw.machine.memory import kept
 from mcgw.sampling.expected import expected
 from mcgw.scene.ensemble import promise_of

@@ -134,7 +134,7 @@ def put(plan: Plan, contents: Callable[[], Labelled], go_on: Callable[[], None] 
         ) from None
 
 
-def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> Ensemble:
+def save(ensemble: Ensemble, path: str | Path) -> Ensemble:
     """Write an ensemble in memory to a file, in one atomic step; never over another one.
 
     Parameters
@@ -143,8 +143,6 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
         With all surfaces of its scene.
     path : str or Path
         The file.
-    wall_seconds : float, optional
-        What making it took.
 
     Returns
     -------
@@ -179,7 +177,7 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
                 f"or remove {parts_of(path)}"
             )
         plan = Plan(storable(ensemble.scene), path, ensemble.sampler)
-        put(plan, lambda: plan.contents([ensemble.sums], wall_seconds))
+        put(plan, lambda: plan.contents([ensemble.sums], 0.0))
     return open_ensemble(path)
 
 

@@ -1,32 +1,164 @@
-"""The scene of each point of a sweep, checked as a scene file is.
+"""The scenes of a sweep, checked as a scene file is and put into groups that share their surfaces.
 
-A sweep is checked and put into groups before anything is drawn.
+Exponential gradings as combinations of two: under Hertz's law every sum is linear in the modulus.
+
+``E*(s)/E* = gamma - (gamma - 1) exp(-s)`` is linear in gamma (a homogeneous surface has gamma = 1). So every
+grading lies between the softest and the stiffest of a sweep: its load on a surface is the same weighted mean
+of their loads there, and over the surfaces its mean and variance follow from their means, variances and
+covariance. A thousand more gradings cost no product with the surfaces. Weights from 0 to 1 and moduli that
+are not negative let nothing cancel: the last digits are those of the two.
 """
 
 import re
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property, lru_cache, reduce
+from operator import add
 from typing import Any
 
+import numpy as np
 import tomli_w
 
-from mcgw.ensemble.forecast import without_rule
-from mcgw.ensemble.pooled import Pooled, pooled_from
-from mcgw.ensemble.results import Tables
+from analytic import Exponential, Homogeneous
+from analytic.arrays import Array, Ints
+from mcgw.ensemble.drawing import GoOn, Values, block_size, drawn_blocks, kept
+from mcgw.ensemble.pooled import Pooled, pooled_from, tables_of
+from mcgw.ensemble.results import Tables, joined
+from mcgw.ensemble.simulation import without_rule
 from mcgw.formats.named_files import loads
+from mcgw.machine.memory import check_memory
 from mcgw.machine.progress import steps
+from mcgw.sampling.shared import Shared, common_edges, shared, to_be_shared
 from mcgw.scene.cautions import cautions
 from mcgw.scene.reading import with_changes
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document, scene_of
 from mcgw.scene.section import SceneError
 from mcgw.sweeps.axes import Axes
-from mcgw.sweeps.groups import Group, Place, groups_of, weighted
-from mcgw.sweeps.sweep import Sweep
+from mcgw.sweeps.sweep import Place, Sweep
 
+_MANY = 8  # gradings; fewer are computed one by one, with the same bits as alone
+_ROWS = 8192  # surfaces whose values are pooled at once, as an ensemble does
+_BYTES = 2**28  # bytes of those values
+_DRAWS = 1e10  # asperities per block: the cost of an interruption
+_ANSWER = 3000  # cost of one scene per surface, in asperities drawn
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 _MOST_TOLD = 20  # most mistakes that are shown
+
+
+class Group(Values):
+    """Points that share their surfaces: their means, variances and covariances.
+
+    Parameters
+    ----------
+    computed : tuple of Scene
+        Those whose sums are computed for every surface.
+    edges : tuple of float
+        Common edges of cells, where the cells of the scenes would differ (`common_edges`).
+    """
+
+    disk = 0  # statistics take hardly any
+
+    def __init__(self, computed: tuple[Scene, ...], edges: tuple[float, ...]) -> None:
+        super().__init__(computed[0])
+        self.computed, self.edges = computed, edges
+        self.work = self.scene.touching + _ANSWER * len(computed)
+
+    @property
+    def rows(self) -> int:
+        """Surfaces per block."""
+        width = sum(scene.width for scene in self.computed)
+        return max(min(_ROWS, _BYTES // (8 * width), int(_DRAWS / (self.scene.touching + 1))), 1)
+
+    def tables(self, first: int, stop: int, go_on: GoOn | None = None) -> Tables:
+        """Return the statistics of a block."""
+        source = _source_of(self)
+        blocks = list(drawn_blocks(source, first, stop, block_size(self.scene, source)))
+        values = [joined([kept(x, block[i]) for block in blocks]) for i, x in enumerate(self.computed)]
+        if go_on:
+            go_on(stop)
+        return tables_of([Pooled.of(values)])
+
+    def held(self, blocks: Iterable[Tables]) -> Pooled:
+        """Return the sum of all blocks."""
+        return reduce(add, (pooled_from(block)[0] for block in blocks))
+
+    def check(self, surfaces: int | None = None) -> None:  # noqa: ARG002
+        """Refuse covariances that the memory cannot hold."""
+        n, h = len(self.computed), len(self.scene.separations)
+        what = f"sweep: covariances between {n} points at {h} separations"
+        check_memory(what, 2 * 8 * self.scene.width * n**2)
+
+
+@lru_cache(maxsize=1)  # blocks come in the order of groups
+def _source_of(group: Group) -> Shared:
+    return shared(group.computed, group.edges)
+
+
+def groups_of(scenes: Sequence[Scene]) -> tuple[list[Group], list[Place]]:
+    """Group the scenes of a sweep; return also where in the groups each scene is."""
+    groups, places = list[Group](), dict[int, Place]()
+    keys = [to_be_shared(scene) for scene in steps(scenes, "points")]
+    for members in _alike([(i,) if key is None else key for i, key in enumerate(keys)]):
+        some, computed = [scenes[i] for i in members], list[Scene]()
+        edges = common_edges(some) if len(some) > 1 else ()
+        if edges is None:
+            some, edges = [scene.replace(sampler="tail") for scene in some], ()
+        others = [each.name for each in fields(Scene) if each.name not in ("grading", "title")]
+        for alike in _alike([[getattr(scene, name) for name in others] for scene in some]):
+            wanted, combinations = combined([some[k] for k in alike])
+            for k, (which, weights) in zip(alike, combinations, strict=True):
+                places[members[k]] = len(groups), len(computed) + which, weights
+            computed += [some[alike[k]] for k in wanted]
+        groups.append(Group(tuple(computed), edges))
+    return groups, [places[i] for i in range(len(scenes))]
+
+
+def _alike(keys: Sequence[Any]) -> list[list[int]]:
+    """Group the numbers of equal keys, which need not be hashable."""
+    found: list[tuple[Any, list[int]]] = []
+    for i, key in enumerate(keys):
+        members = next((some for other, some in reversed(found) if other == key), None)
+        if members is None:
+            found.append((key, members := []))
+        members.append(i)
+    return [members for _, members in found]
+
+
+def combined(scenes: Sequence[Scene]) -> tuple[Sequence[int], list[tuple[Ints, Array]]]:
+    """Scenes that differ in their gradings alone, as weighted means of some of them.
+
+    Returns
+    -------
+    (sequence of int, list of (ndarray, ndarray))
+        Those of which all are means: two; or all, if they are few, a grading is no exponential one, or sums
+        are not linear in it. For each scene which of them it is made of, and their weights.
+    """
+    one = scenes[0]
+    # All that is kept must be linear in a modulus that is not negative.
+    linear = one.hertzian and one.interaction is None and one.negative == "error"
+    gammas = [
+        x.grading.gamma if isinstance(x.grading, Exponential) else 1.0 if x.grading == Homogeneous() else None
+        for x in scenes
+    ]
+    if len(set(gammas)) < _MANY or None in gammas or not linear:
+        return range(len(scenes)), [(np.array([i]), np.ones(1)) for i in range(len(scenes))]
+    x = np.array(gammas, dtype=np.float64)
+    low, high = int(np.argmin(x)), int(np.argmax(x))
+    pairs = [np.array([1 - share, share]) for share in (x - x[low]) / (x[high] - x[low])]
+    return (low, high), [(np.flatnonzero(pair), pair[pair != 0]) for pair in pairs]
+
+
+def weighted(reducers: Iterable[Values], tell: Callable[[float, float], object]) -> GoOn:
+    """Convert work done to (done, total) surfaces, weighted by their cost."""
+    each = [(one.scene.n_surfaces, one.scene.n_surfaces * one.work) for one in reducers]
+    surfaces, work = map(sum, zip(*each, strict=True))
+
+    def note(done: float) -> bool:
+        tell(round(surfaces * done / work), surfaces)
+        return True
+
+    return note
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +178,7 @@ class Points(Sequence[Scene]):
     document: dict[str, Any]
     axes: Axes
     drawn: tuple[int, ...] = ()
+    _made: dict[int, Scene] = field(default_factory=dict, init=False)
 
     @classmethod
     def of(cls, scene: Scene, axes: Axes) -> "Points":
@@ -69,20 +202,13 @@ class Points(Sequence[Scene]):
         return self.axes.size
 
     def __getitem__(self, i: Any) -> Any:
-        """Return a scene, or several."""
-        of = range(len(self))[i]
-        return [self._scene(k) for k in of] if isinstance(i, slice) else self._scene(of)
-
-    @cached_property
-    def _scene(self) -> Callable[[int], Scene]:
-        points = list(self.axes.points())
-
-        @cache
-        def made(i: int) -> Scene:
-            scene = scene_of(with_changes(self.document, self.axes.at(points[i])))
-            return scene.replace(n_surfaces=self.drawn[i], rel_err=None) if self.drawn else scene
-
-        return made
+        """Return a scene."""
+        k = range(len(self))[i]
+        if k not in self._made:
+            at = self.axes.at(tuple(np.unravel_index(k, self.axes.shape)))
+            scene = scene_of(with_changes(self.document, at))
+            self._made[k] = scene.replace(n_surfaces=self.drawn[k], rel_err=None) if self.drawn else scene
+        return self._made[k]
 
     @cached_property
     def _grouped(self) -> tuple[list[Group], list[Place]]:
@@ -127,21 +253,20 @@ class Points(Sequence[Scene]):
         StoreError
             If the memory is too small.
         """
-        note, done = weighted(self.groups, tell), 0.0
+        note, done, pooled = weighted(self.groups, tell), 0.0, list[Pooled]()
         for group in self.groups:
             group.check()
-
-        def blocks(group: Group) -> Iterator[Tables]:
-            nonlocal done
-            n = group.scene.n_surfaces
-            for first in range(0, n, group.rows):
-                stop = min(first + group.rows, n)
-                yield group.tables(first, stop)
-                done += (stop - first) * group.work
-                note(done)
-
         note(0)
-        return self.answered([group.held(blocks(group)) for group in self.groups])
+        for group in self.groups:
+            n, rows = group.scene.n_surfaces, group.rows
+
+            def go_on(stop: float, before: float = done, work: float = group.work) -> bool:
+                return note(before + stop * work)
+
+            blocks = (group.tables(first, min(first + rows, n), go_on) for first in range(0, n, rows))
+            pooled.append(group.held(blocks))
+            done += n * group.work
+        return self.answered(pooled)
 
 
 def sweep_of(scene: str, axes: str, drawn: Tables) -> Sweep:

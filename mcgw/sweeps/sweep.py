@@ -9,19 +9,19 @@ from typing import Any
 
 import numpy as np
 
-from analytic.arrays import Ints
+from analytic.arrays import Array, Ints
 from mcgw.ensemble.dataset import Dataset
-from mcgw.ensemble.ensemble import STATISTICS, Ensemble
-from mcgw.ensemble.paired import Difference, Paired, Slopes, Some, difference_of, ratio_of
-from mcgw.ensemble.pooled import Pooled, tables_of
-from mcgw.ensemble.results import Labelled, Variable, axis, statistics_of
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.paired import Difference, Paired, Slopes, difference_of, ratio_of
+from mcgw.ensemble.pooled import PointResults, Pooled, tables_of
+from mcgw.ensemble.results import STATISTICS, Labelled, Variable, axis, statistics_of
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
 from mcgw.sampling.samplers import name_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.sweeps.axes import Axes, label
-from mcgw.sweeps.groups import Place, PointResults
 
+Place = tuple[int, Ints, Array]  # of a point: number of its group, which computed scenes of it, their weights
 At = Mapping[str, Any] | Sequence[int] | int
 _SHOWN = 7  # points displayed
 
@@ -76,7 +76,7 @@ class Sweep(Dataset):
         ValueError
             If there is no such point.
         """
-        return self.scenes[self._numbers(at)[0]]
+        return self.scenes[self._number(at)]
 
     def ensemble(self, at: At) -> Ensemble:
         """Mean and standard deviation of a point, as an ensemble of its scene.
@@ -86,7 +86,7 @@ class Sweep(Dataset):
         ValueError
             If there is no such point.
         """
-        (i,) = self._numbers(at)
+        i = self._number(at)
         return Ensemble(self.scenes[i], name_of(self.scenes[i]), self._held(i))
 
     def difference(self, quantity: str, one: At, other: At) -> Difference:
@@ -113,10 +113,8 @@ class Sweep(Dataset):
             correlated, and it is not known how strongly.
         """
         name, per_area = self._stored(quantity)
-        a, b = self._numbers(one, other)
-        pooled, both = self._pair(name, a, b)
-        per = [1 / self.scenes[k].surface.nominal_area if per_area else 1.0 for k in (a, b)]
-        return difference_of(pooled, name, *both, per[0], per[1])
+        x, y = (1 / self.scene(at).surface.nominal_area if per_area else 1.0 for at in (one, other))
+        return difference_of(name, *self._pair(one, other), x, y)
 
     def ratio(self, quantity: str, one: At, other: At) -> Paired:
         """Ratio of a mean between two points, first over second, over the same surfaces.
@@ -128,9 +126,7 @@ class Sweep(Dataset):
         Paired
             With its standard error over the surfaces, and `interval`.
         """
-        name, _ = self._stored(quantity)
-        pooled, both = self._pair(name, *self._numbers(one, other))
-        return ratio_of(pooled, name, *both, self.separations)
+        return ratio_of(self._stored(quantity)[0], *self._pair(one, other), self.separations)
 
     def slopes(self, quantity: str, along: str) -> Slopes:
         """Change of a mean with a key between neighbouring points, over the same surfaces, and by theory.
@@ -182,7 +178,7 @@ class Sweep(Dataset):
         }
         if self.axes.zipped:
             coordinates["point"] = axis("point", np.arange(self.axes.size))
-        variables = statistics_of(self, self.quantities, STATISTICS, self.axes.dims)
+        variables = statistics_of(self, self.axes.dims)
         # Of each point its group, one or two scenes of it (-1: none), and their weights.
         points = [(group, *scenes, -1)[:3] for group, scenes, _ in self.places]
         weights = [(*weights, 0.0)[:2] for *_, weights in self.places]
@@ -248,17 +244,17 @@ class Sweep(Dataset):
                 found[name] = pairs
         return found
 
-    def _numbers(self, *at: At) -> list[int]:
-        """Numbers of points, given by the values of their keys or by indices."""
-        return [int(np.ravel_multi_index(self.axes.place(each), self.shape)) for each in at]
+    def _number(self, at: At) -> int:
+        """Return the number of a point, given by the values of its keys or by indices."""
+        return int(np.ravel_multi_index(self.axes.place(at), self.shape))
 
-    def _pair(self, name: str, a: int, b: int) -> tuple[Pooled, tuple[Some, Some]]:
-        """Return what is kept of the surfaces that two points share, and which part of it each is."""
-        one, other = self._held(a), self._held(b)
+    def _pair(self, *both: At) -> tuple[PointResults, PointResults]:
+        """Return what is known of two points, which must share their surfaces."""
+        one, other = (self._held(self._number(at)) for at in both)
         if one.pooled is not other.pooled:
-            where = " and ".join(self.axes.text(list(self.axes.points())[k]) for k in (a, b))
+            where = " and ".join(self.axes.text(self.axes.place(at)) for at in both)
             raise ValueError(
                 f"sweep: {where} have different surfaces, so there are no pairs, but the same seed "
                 "correlates them: give the ensemble of each its own seed"
             )
-        return one.pooled, (one.of(name), other.of(name))
+        return one, other

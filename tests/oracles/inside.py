@@ -15,13 +15,12 @@ MODULES = {
     "mcgw.elasticity.spots": "fallen Spots",
     "mcgw.ensemble.at_load": "mean_surface pressures_of",
     "mcgw.ensemble.drawing": "block_size kept reducer_of Statistics use_threads Values",
-    "mcgw.ensemble.forecast": "after before checkpoints forecast upper_contacts",
     "mcgw.ensemble.intervals": (
         "count_interval exact_ends FEWEST pearson3_quantile Spread spread_of TOO_FEW"
     ),
     "mcgw.ensemble.results": "Held Results",
     "mcgw.ensemble.separation": "Asperities crossing",
-    "mcgw.ensemble.simulation": "in_words rough_seconds",
+    "mcgw.ensemble.simulation": "after before checkpoints forecast in_words rough_seconds upper_contacts",
     "mcgw.ensemble.solution": "solutions",
     "mcgw.figures.catalogue": "CATALOGUE figures_of",
     "mcgw.figures.compared": "Compared",
@@ -75,8 +74,7 @@ MODULES = {
     "mcgw.store.place": "put tidy",
     "mcgw.store.run_plan": "blocks_of commit_shard open_shard Plan RECORD Span",
     "mcgw.sweeps.axes": "axes_of label",
-    "mcgw.sweeps.groups": "_ROWS Group",
-    "mcgw.sweeps.points": "sweep_cautions",
+    "mcgw.sweeps.points": "_ROWS Group sweep_cautions",
 }
 HOME = {name: module for module, names in MODULES.items() for name in names.split()}
 
