@@ -284,10 +284,14 @@ class LoadedSurfaces:
             raise ValueError(f"{q.name} = {value:g}{unit}: {surface} does not reach it; give {give}")
         return {"separation": h, **found}
 
-    def contacts(self, surface: int, h: float) -> tuple[Array, Array | None]:
-        """Reduced heights above a separation in descending order, and the radii of these summits."""
+    def contacts(self, number: int, surface: int) -> tuple[Array, Array | None]:
+        """Reduced heights in contact on a surface at one of the values, in descending order, and radii."""
         from mcgw.sampling.asperities import summits, touching_summits
 
+        found = self.sums[number]["separation"]
+        if not 0 <= surface < found.size:
+            raise ValueError(f"surface = {surface}: give a number from 0 to {found.size - 1}")
+        h = float(found[surface])
         s, ratios = (summits if h < self.drawn.lowest else touching_summits)(self.drawn, surface)
         order = np.argsort(-s, kind="stable")[: np.count_nonzero(s > h)]
         return s[order], None if ratios is None else ratios[order]

@@ -104,19 +104,13 @@ class Solution(Shown):
         >>> found.heights(3).size == int(found.surfaces["contacts"][3])
         True
         """
-        return self._contacts(surface)[0]
+        s: Array = self.loaded.contacts(self.number, surface)[0]
+        return s
 
     def radii(self, surface: int) -> Array:
         """Radii of the asperities in contact, m, in the order of `heights`."""
-        s, ratios = self._contacts(surface)
+        s, ratios = self.loaded.contacts(self.number, surface)
         return np.asarray(self.scene.surface.radius * (np.ones_like(s) if ratios is None else ratios))
-
-    def _contacts(self, surface: int) -> tuple[Array, Array | None]:
-        h = self.surfaces["separation"]
-        if not 0 <= surface < h.size:
-            raise ValueError(f"surface = {surface}: give a number from 0 to {h.size - 1}")
-        found: tuple[Array, Array | None] = self.loaded.contacts(surface, float(h[surface]))
-        return found
 
     @cached_property
     def value(self) -> Answers:

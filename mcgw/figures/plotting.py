@@ -109,16 +109,16 @@ def _(result: Paired) -> Panel:
 @panel_of.register
 def _(result: Sweep, *, quantity: str) -> Panel:
     """Return a line a point, from the first to the last along all axes."""
-    order, points = np.argsort(result.separations, kind="stable"), list(result.axes.points())
-    means, errors, h = result.mean(quantity), result.stderr(quantity), result.separations[order]
-    some = [points[i] for i in evenly(len(points), _MOST_LINES)]
+    order, size = np.argsort(result.separations, kind="stable"), result.axes.size
+    means, errors = (get(quantity).reshape(size, -1) for get in (result.mean, result.stderr))
+    h, some = result.separations[order], evenly(size, _MOST_LINES)
 
     def paint(axis: Any) -> None:
         for k, at in enumerate(some):
             own = step(result.axes.values_text(at), k, len(some))
             axis.errorbar(h, means[at][order], 1.96 * errors[at][order], marker="o", ms=3, **own)
 
-    among = f"{len(some)} of {len(points)} points" if len(some) < len(points) else f"{len(points)} points"
+    among = f"{len(some)} of {size} points" if len(some) < size else f"{size} points"
     label = f"mean {quantity.replace('_', ' ')} ({result.scenes[0].quantity(quantity).unit})"
     scales = ("linear", "log" if np.any(means > 0) else "linear")
     return Panel(

@@ -96,8 +96,7 @@ def _worst_panel(comparison: SweepComparison) -> Panel:
         reach = max(4, 1.5 * np.abs(t.residual[t.counts]).max(initial=0.0))
         axis.set_ylim(-reach, reach)
 
-    point = list(comparison.sweep.axes.points())[t.number]
-    at = one_line(comparison.sweep.axes.text(point)).replace("$", r"\$")
+    at = one_line(comparison.sweep.axes.text(t.number)).replace("$", r"\$")
     title = textwrap.fill(f"worst: {at}; p = {t.verdict.p:.2g} of this point alone", 36)
     return Panel(title, SEPARATION, _RESIDUAL, paint=paint)
 

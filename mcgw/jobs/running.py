@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any, overload
 from mcgw.ensemble.drawing import use_threads
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Results
-from mcgw.ensemble.simulation import checkpoints, forecast, without_rule
+from mcgw.ensemble.simulation import forecast, without_rule
 from mcgw.jobs.executors import share_of
 from mcgw.jobs.making import make
 from mcgw.machine.progress import Progress, told
+from mcgw.sampling.counts import GROUP
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene, storable
 from mcgw.store.ensembles import open_ensemble, open_sweep
@@ -130,16 +131,11 @@ def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
     """Yield the scene with a number of surfaces in place of its stop rules; growing with `max_seconds`."""
     held = min(open_ensemble(path).n_surfaces, scene.n_surfaces) if path.is_file() else 0
     fixed = without_rule(scene)
-    last = max(fixed.n_surfaces, held)
-    if scene.max_seconds is not None:
-        if held:
-            yield fixed.replace(n_surfaces=held)
-        for n in checkpoints(last):
-            if held < n < last and n >= 2 * held:
-                yield fixed.replace(n_surfaces=n)
-                held = n
-    if held < last or scene.max_seconds is None:
-        yield fixed.replace(n_surfaces=last)
+    last, n = max(fixed.n_surfaces, held), held or GROUP
+    while scene.max_seconds is not None and n < last:
+        yield fixed.replace(n_surfaces=n)
+        n *= 2
+    yield fixed.replace(n_surfaces=last)
 
 
 _Over = Mapping[str, Iterable[Any]]

@@ -71,9 +71,9 @@ def comparison_text(comparison: Comparison) -> str:
 
 def ratios_in_words(sweep: "Sweep") -> list[str]:
     """Of each quantity a line: its mean at the last point over that at the first, on the same surfaces."""
-    h, points = sweep.separations, list(sweep.axes.points())
+    h, axes = sweep.separations, sweep.axes
     ends = dict.fromkeys((int(np.argmin(h)), int(np.argmax(h))))
-    last, first = sweep.axes.text(points[-1]), sweep.axes.text(points[0])
+    last, first = axes.text(axes.size - 1), axes.text(0)
     lines = []
     for name, pairs in sweep.ratios().items():
         ratio, (low, high) = pairs[-1].ratio, pairs[-1].interval()

@@ -193,21 +193,16 @@ class SweepComparison(Shown):
             ("residuals", f"{beyond} of {len(self.residuals)} beyond 3 standard errors"),
         ]
         shown = self.worst[:most]
-        where = list(self.sweep.axes.points())
-        at = [self.sweep.axes.values_text(where[one.number]) for one in shown]
+        at = [self.sweep.axes.values_text(one.number) for one in shown]
         rows = joined([one.table(self.sweep.scenes[0]).at([one.row]) for one in shown])
         columns = Column("point", at, ", ".join(self.sweep.axes.keys)), *rows.columns
         return Table(columns, f"Monte Carlo and theory of {n} scenes {v.word}", facts)
 
     def table(self) -> Table:
         """Return a row for each point, quantity and separation."""
-        axes, where = self.sweep.axes, list(self.sweep.axes.points())
+        axes = self.sweep.axes
         tables = [one.table(self.sweep.scenes[0]) for one in self.points]
-        at = [
-            axes.at(where[one.number])
-            for one, x in zip(self.points, tables, strict=True)
-            for _ in range(len(x))
-        ]
+        at = [axes.at(one.number) for one, x in zip(self.points, tables, strict=True) for _ in range(len(x))]
         keys = (Column(key, [label(values[key]) for values in at]) for key in axes.keys)
         return Table((*keys, *joined(tables).columns))
 
@@ -262,7 +257,7 @@ def compare(
                 )
             points = []
             with told(progress, "points") as tell:
-                for i, point in enumerate(result.axes.points()):
+                for i, point in enumerate(np.ndindex(result.shape)):
                     tell(i, result.axes.size)
                     points.append(replace(tested(result.ensemble(point), _SEPARATIONS), number=i))
                 tell(result.axes.size, result.axes.size)

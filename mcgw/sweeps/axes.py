@@ -2,9 +2,8 @@
 
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -17,8 +16,6 @@ from mcgw.scene.keys import TABLES
 from mcgw.scene.kinds import as_toml
 from mcgw.scene.section import SceneError
 from mcgw.scene.writing import law_table
-
-Point = tuple[int, ...]
 
 _SECTIONS = [name for name in TABLES if name not in ("", "fitted")]
 _LISTED = 6
@@ -79,22 +76,19 @@ class Axes:
         """Number of points."""
         return math.prod(self.shape)
 
-    def points(self) -> Iterator[Point]:
-        """Return the indices of all points, the last dimension fastest."""
-        return product(*map(range, self.shape))
-
-    def at(self, point: Point) -> dict[str, Any]:
-        """Return the value of each key at a point."""
+    def at(self, number: int) -> dict[str, Any]:
+        """Return the value of each key at a point, by its number among all, the last dimension fastest."""
+        point = np.unravel_index(number, self.shape)
         places = point * len(self.values) if self.zipped else point
         return {key: values[i] for (key, values), i in zip(self.values.items(), places, strict=True)}
 
-    def text(self, point: Point) -> str:
+    def text(self, number: int) -> str:
         """Return a point in words."""
-        return brief(", ".join(f"{key} = {_short(value)}" for key, value in self.at(point).items()))
+        return brief(", ".join(f"{key} = {_short(value)}" for key, value in self.at(number).items()))
 
-    def values_text(self, point: Point) -> str:
+    def values_text(self, number: int) -> str:
         """Return the values in the order of the keys."""
-        return brief(", ".join(map(_short, self.at(point).values())))
+        return brief(", ".join(map(_short, self.at(number).values())))
 
     def numbers(self, key: str) -> tuple[int, Array]:
         """Return the dimension that a key is along, and its values, of which neighbours are compared.
@@ -120,8 +114,8 @@ class Axes:
             return ", ".join(values)
         return f"{len(values)} from {values[0]} to {values[-1]}"
 
-    def place(self, at: "Mapping[str, Any] | Sequence[int] | int") -> Point:
-        """Find a point by the values of its keys, or by its index along each dimension.
+    def place(self, at: "Mapping[str, Any] | Sequence[int] | int") -> int:
+        """Find the number of a point by the values of its keys, or by its index along each dimension.
 
         Raises
         ------
@@ -132,7 +126,7 @@ class Axes:
             if unknown := [key for key in at if key not in self.values]:
                 raise ValueError(f"{unknown[0]!r} is no axis of this sweep; it has {', '.join(self.keys)}")
             wanted = {key: _value(key, value) for key, value in at.items()}
-            found = [p for p in self.points() if all(self.at(p)[k] == v for k, v in wanted.items())]
+            found = [i for i in range(self.size) if wanted.items() <= self.at(i).items()]
             if len(found) != 1:
                 raise ValueError(f"{len(found)} points have {dict(at)}; give one value of each axis")
             return found[0]
@@ -141,7 +135,7 @@ class Axes:
             -n <= i < n for i, n in zip(point, self.shape, strict=True)
         ):
             raise ValueError(f"there is no point {point}; the sweep has the shape {self.shape}")
-        return tuple(i % n for i, n in zip(point, self.shape, strict=True))
+        return int(np.ravel_multi_index([i % n for i, n in zip(point, self.shape, strict=True)], self.shape))
 
 
 def axes_of(over: Mapping[str, Any], *, zipped: bool, resolve: Callable[[Any], Any] | None = None) -> Axes:

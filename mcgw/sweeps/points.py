@@ -205,19 +205,18 @@ class Points(Sequence[Scene]):
         """Return a scene."""
         k = range(len(self))[i]
         if k not in self._made:
-            at = self.axes.at(tuple(np.unravel_index(k, self.axes.shape)))
-            scene = scene_of(with_changes(self.document, at))
+            scene = scene_of(with_changes(self.document, self.axes.at(k)))
             self._made[k] = scene.replace(n_surfaces=self.drawn[k], rel_err=None) if self.drawn else scene
         return self._made[k]
 
     @cached_property
     def _grouped(self) -> tuple[list[Group], list[Place]]:
         found, problems = list[Scene](), list[str]()
-        for i, point in enumerate(steps(list(self.axes.points()), "points")):
+        for i in steps(range(len(self)), "points"):
             try:
                 found.append(self[i])
             except SceneError as error:
-                problems += [f"{line} (at {self.axes.text(point)})" for line in error.problems]
+                problems += [f"{line} (at {self.axes.text(i)})" for line in error.problems]
         if len(problems) > _MOST_TOLD:
             problems = [*problems[:_MOST_TOLD], f"... and {len(problems) - _MOST_TOLD} more"]
         elif not problems and len({(one.separations, one.tables) for one in found}) > 1:
@@ -281,15 +280,14 @@ def sweep_cautions(sweep: Sweep) -> list[str]:
 
     Cautions that differ in their numbers alone are one, with those of the first point that has it.
     """
-    points = list(sweep.axes.points())
     found: dict[str, list[tuple[int, str]]] = {}
-    for i in range(len(points)):
+    for i in range(sweep.axes.size):
         for line in cautions(sweep.scenes[i]):
             found.setdefault(_NUMBER.sub("#", line), []).append((i, line))
     lines = []
     for some in sorted(found.values(), key=len, reverse=True):
         first, line = some[0]
         alike = len({text for _, text in some}) == 1
-        where = "" if alike else f" (numbers of {sweep.axes.text(points[first])})"
-        lines.append(f"{len({i for i, _ in some})} of {len(points)} points: {line}{where}")
+        where = "" if alike else f" (numbers of {sweep.axes.text(first)})"
+        lines.append(f"{len({i for i, _ in some})} of {sweep.axes.size} points: {line}{where}")
     return lines

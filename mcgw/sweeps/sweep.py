@@ -76,7 +76,7 @@ class Sweep(Dataset):
         ValueError
             If there is no such point.
         """
-        return self.scenes[self._number(at)]
+        return self.scenes[self.axes.place(at)]
 
     def ensemble(self, at: At) -> Ensemble:
         """Mean and standard deviation of a point, as an ensemble of its scene.
@@ -86,7 +86,7 @@ class Sweep(Dataset):
         ValueError
             If there is no such point.
         """
-        i = self._number(at)
+        i = self.axes.place(at)
         return Ensemble(self.scenes[i], name_of(self.scenes[i]), self._held(i))
 
     def difference(self, quantity: str, one: At, other: At) -> Difference:
@@ -200,9 +200,8 @@ class Sweep(Dataset):
         )
         facts.append(("surfaces", f"{surfaces}, {groups}"))
         k = int(np.argmin(self.separations))
-        points = list(self.axes.points())
-        shown = evenly(len(points), _SHOWN)
-        where = [self.axes.values_text(points[i]) for i in shown]
+        shown = evenly(self.axes.size, _SHOWN)
+        where = [self.axes.values_text(i) for i in shown]
         columns = [Column("point", where, f"mean +- stderr at d/sigma = {self.separations[k]:g}")]
         for name in self.quantities:
             mean, error = (get(name)[..., k].ravel()[shown] for get in (self.mean, self.stderr))
@@ -216,7 +215,7 @@ class Sweep(Dataset):
         Ratios are those of `ratios`, with the ends of their 95 % intervals.
         """
         h, size = self.separations, self.axes.size
-        at = [self.axes.at(point) for point in self.axes.points()]
+        at = [self.axes.at(i) for i in range(size)]
         columns = [Column(key, [label(values[key]) for values in at for _ in h]) for key in self.axes.keys]
         columns.append(Column("separation", np.tile(h, size), SEPARATION, form="g"))
         ratios = self.ratios()
@@ -234,23 +233,18 @@ class Sweep(Dataset):
 
         Empty unless all points share their surfaces.
         """
-        first, *others = self.axes.points()
-        if not others or len({group for group, *_ in self.places}) > 1:
+        if self.axes.size == 1 or len({group for group, *_ in self.places}) > 1:
             return {}
-        found = {}
+        found, (first, *others) = {}, map(self._held, range(self.axes.size))
         for name in self.quantities:
-            pairs = [self.ratio(name, point, first) for point in (first, *others)]
+            pairs = [ratio_of(name, point, first, self.separations) for point in (first, *others)]
             if any((pair.ratio != 1).any() for pair in pairs[1:]):
                 found[name] = pairs
         return found
 
-    def _number(self, at: At) -> int:
-        """Return the number of a point, given by the values of its keys or by indices."""
-        return int(np.ravel_multi_index(self.axes.place(at), self.shape))
-
     def _pair(self, *both: At) -> tuple[PointResults, PointResults]:
         """Return what is known of two points, which must share their surfaces."""
-        one, other = (self._held(self._number(at)) for at in both)
+        one, other = (self._held(self.axes.place(at)) for at in both)
         if one.pooled is not other.pooled:
             where = " and ".join(self.axes.text(self.axes.place(at)) for at in both)
             raise ValueError(

@@ -185,9 +185,9 @@ def test_points_are_found_as_elements_of_a_list():
     over = {GAMMA: [1.0, 2.0, 3.0], "ensemble.seed": [1, 2, 3]}
     square, line = axes_of(over, zipped=False), axes_of(over, zipped=True)
     for i in range(-3, 3):
-        assert line.place(i) == line.place((i,)) == (range(3)[i],)
-        assert [square.place((i, k)) for k in range(-3, 3)] == [(range(3)[i], k) for k in 2 * [0, 1, 2]]
-    assert line.place({GAMMA: 3.0}) == (2,)
+        assert line.place(i) == line.place((i,)) == range(3)[i]
+        assert [square.place((i, k)) for k in range(-3, 3)] == [3 * range(3)[i] + k for k in 2 * [0, 1, 2]]
+    assert line.place({GAMMA: 3.0}) == 2
     for axes, at in [(line, 3), (line, -4), (line, (0, 0)), (square, (0, 3)), (square, (-4, 0)), (square, 0)]:
         with pytest.raises(ValueError, match="there is no point"):
             axes.place(at)

@@ -73,7 +73,7 @@ def test_one_mean_of_one_point_that_is_off_breaks_it(sweep, name):
     compared = mcgw.compare(off(sweep, 1.03, name=name))
     assert not compared.verdict.agrees
     worst = compared.worst[0]
-    at = sweep.axes.at(list(sweep.axes.points())[worst.number])
+    at = sweep.axes.at(worst.number)
     assert at == {"grading.gamma": 2.0, "ensemble.seed": 2}
     assert worst.quantities[worst.worst[0]] == name
     assert compared.sheet().columns[0].values[0] == "2, 2"
