@@ -99,19 +99,6 @@ def _write(path: Path, tables: Tables, about: dict[str, Any], expected: Expected
         write(temporary, Labelled(variables, {}, about))
 
 
-def open_shard(path: Path, run: str, *, numbers: bool = True) -> tuple[Span, float] | None:
-    """Return the surfaces of a shard of this run and what drawing it took, s, if it is there and whole.
-
-    `numbers`: and all of them are as written.
-    """
-    try:
-        said = {} if path.is_symlink() else look(path, BLOCK_TYPE, numbers=numbers)
-        span, seconds, its_run = Span(said["first"], said["n"]), said["wall_seconds"], said["run"]
-    except (StoreError, KeyError):
-        return None
-    return (span, seconds) if its_run == run and path.name == span.file_name else None
-
-
 class Plan:
     """What is drawn into a file: a scene, or groups of scenes that share their surfaces.
 
@@ -269,11 +256,14 @@ class Plan:
 
     def shard(self, path: Path, *, numbers: bool = True) -> tuple[Span, float] | None:
         """Return the block of a shard and its seconds, if it is there, whole, of this run and of use."""
-        shard, rows = open_shard(path, self.identity, numbers=numbers), self.reducers[0].rows
-        if shard is None or shard[0] in self.blocks:
-            return shard
-        of_more = not self.axes and shard[0].n == rows and shard[0].first % rows == 0
-        return shard if of_more else None  # of the same scene with more surfaces
+        try:
+            said = {} if path.is_symlink() else look(path, BLOCK_TYPE, numbers=numbers)
+            span, seconds, run = Span(said["first"], said["n"]), said["wall_seconds"], said["run"]
+        except (StoreError, KeyError):
+            return None
+        rows, its_own = self.reducers[0].rows, run == self.identity and path.name == span.file_name
+        of_more = not self.axes and span.n == rows and span.first % rows == 0  # the scene with more surfaces
+        return (span, seconds) if its_own and (span in self.blocks or of_more) else None
 
     def shard_path(self, span: Span) -> Path:
         """Where the shard of a block lies, or would."""

@@ -202,7 +202,9 @@ class Points(Sequence[Scene]):
         return self.axes.size
 
     def __getitem__(self, i: Any) -> Any:
-        """Return a scene."""
+        """Return a scene, or several."""
+        if isinstance(i, slice):
+            return [self[k] for k in range(len(self))[i]]
         k = range(len(self))[i]
         if k not in self._made:
             scene = scene_of(with_changes(self.document, self.axes.at(k)))

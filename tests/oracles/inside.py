@@ -72,7 +72,7 @@ MODULES = {
     "mcgw.store.identity": "another",
     "mcgw.store.lock": "LOCK_FILES locked LockedError parts_of PATIENCE",
     "mcgw.store.place": "put tidy",
-    "mcgw.store.run_plan": "blocks_of commit_shard open_shard Plan RECORD Span",
+    "mcgw.store.run_plan": "blocks_of commit_shard Plan RECORD Span",
     "mcgw.sweeps.axes": "axes_of label",
     "mcgw.sweeps.points": "_ROWS Group sweep_cautions",
 }

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from oracles.begun_runs import settle
 from oracles.flipped import flip_a_number
-from oracles.inside import Group, Plan, commit_block, home, parts_of, read_attributes
+from oracles.inside import RECORD, Group, Plan, commit_block, home, parts_of, read_attributes
 from oracles.said import call
 
 import mcgw
@@ -171,7 +171,7 @@ def test_a_worker_draws_for_nobody_who_asked_something_else(tmp_path):
     mcgw.sweep(SCENE, OVER, path=path, shard="2/2")
     plan = Plan.open(parts_of(path))
     plan.identity = "0" * 64
-    plan._write(expected="anything")
+    home("Plan")._write(parts_of(path) / RECORD, {}, plan._about("mcgw-run"))
     with pytest.raises(mcgw.RunError, match="this worker cannot draw for that run"):
         commit_block(str(parts_of(path)), 0, 100)
 
