@@ -6,6 +6,7 @@ surfaces as for a billion.
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import cached_property, reduce
 from operator import add
 from time import perf_counter
@@ -105,6 +106,7 @@ def use_threads(threads: int | None) -> Iterator[None]:
         numba.set_num_threads(before)
 
 
+@dataclass(eq=False)
 class Values:
     """Draws the surfaces of one scene and keeps of each all its numbers.
 
@@ -119,14 +121,14 @@ class Values:
         What stands for its sampler, to be asked its size.
     """
 
-    def __init__(self, scene: Scene, expected: Expected | None = None) -> None:
-        self.scene, self._expected = scene, expected
-        self.work = 1.0  # cost of a surface, in any unit
+    scene: Scene
+    expected: Expected | None = None
+    work = 1.0  # cost of a surface, in any unit
 
     @cached_property
     def sampler(self) -> Any:
         """The scene's."""
-        return self._expected or sampler_of(self.scene)
+        return self.expected or sampler_of(self.scene)
 
     @cached_property
     def rows(self) -> int:

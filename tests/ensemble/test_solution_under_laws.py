@@ -114,3 +114,10 @@ def test_a_load_that_is_jumped_over_is_passed():
         assert solved_by_hand(law, "load", value) == pytest.approx(1.5, abs=1e-15)
     assert solved_by_hand(law, "load", 0.99 * at_yield) == pytest.approx(2 - (0.99) ** (2 / 3) * 0.5)
     assert np.isnan(solved_by_hand(law, "load", 1.8, start=1.9))
+
+
+@pytest.mark.parametrize("share", [0.94, 0.96, 0.98, 0.999])
+def test_an_area_that_falls_at_yield_is_met_before(share):
+    """One asperity of Kogut and Etsion: its area falls by 7 % there, and is the same again farther down."""
+    law = mcgw.KogutEtsion(critical=0.05)
+    assert solved_by_hand(law, "area", share * 0.05) == pytest.approx(2 - share * 0.05)
