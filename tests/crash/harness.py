@@ -122,7 +122,7 @@ def found(scene, file, acked, digest):
         return [f"the record: {error}"]
     valid = run.shards()
     if sum(span.n for span in valid) < acked:
-        wrong.append(f"{acked} surfaces were committed, {sum(s.span.n for s in valid)} are there")
+        wrong.append(f"{acked} surfaces were committed, {sum(span.n for span in valid)} are there")
     if len(valid) != len(list(run.shards_folder.glob("block-*.h5"))):
         wrong.append("a shard is there and not whole")
     for span in valid:
