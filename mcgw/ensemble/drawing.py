@@ -6,7 +6,6 @@ surfaces as for a billion.
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cached_property, reduce
 from operator import add
 from time import perf_counter
@@ -106,7 +105,6 @@ def use_threads(threads: int | None) -> Iterator[None]:
         numba.set_num_threads(before)
 
 
-@dataclass(eq=False)
 class Values:
     """Draws the surfaces of one scene and keeps of each all its numbers.
 
@@ -121,14 +119,14 @@ class Values:
         What stands for its sampler, to be asked its size.
     """
 
-    scene: Scene
-    expected: Expected | None = None
-    work = 1.0  # cost of a surface, in any unit
+    def __init__(self, scene: Scene, expected: Expected | None = None) -> None:
+        self.scene, self._expected = scene, expected
+        self.work = 1.0  # cost of a surface, in any unit
 
     @cached_property
     def sampler(self) -> Any:
         """The scene's."""
-        return self.expected or sampler_of(self.scene)
+        return self._expected or sampler_of(self.scene)
 
     @cached_property
     def rows(self) -> int:
