@@ -110,8 +110,8 @@ def _law_of_moments(plain: int, rooted: int) -> tuple[Array, Array]:
     x = 2 * v * v - 1
     b = np.concatenate(
         [
-            chebyshev.chebvander(x, max(plain, 1) - 1)[:, :plain],
-            v[:, None] * chebyshev.chebvander(x, max(rooted, 1) - 1)[:, :rooted],
+            chebyshev.chebvander(x, plain)[:, :plain],
+            v[:, None] * chebyshev.chebvander(x, rooted)[:, :rooted],
         ],
         axis=1,
     )
