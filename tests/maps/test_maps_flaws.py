@@ -1,5 +1,6 @@
 """What lies on a map and is no roughness is named with its size; clean maps are left in peace."""
 
+import math
 import re
 from dataclasses import replace
 
@@ -268,6 +269,18 @@ def test_what_rounding_adds_to_bends():
     seen = shares(plain(z, recorded=(3e-8, 0.0)))["rounding"]
     assert seen == pytest.approx((3e-8) ** 2 / 12 * 6 / min(bends), rel=1e-3)
     assert shares(plain(z, recorded=(0.0, 0.0)))["rounding"] == 0
+
+
+def test_what_rounding_adds_is_filtered_along_both_axes():
+    """On pixels of 1 x 2 um the filter leaves less of it along x; literal weights of its window."""
+    ready, expected = plain(instrument_map(1, 64, 50e-6), 16e-6, recorded=(3e-8, 0.0)), []
+    width = math.sqrt(math.log(2) / math.pi) * 16e-6
+    for axis, pixels in ((1, (1e-6, 2e-6)), (0, (2e-6, 1e-6))):
+        windows = (np.exp(-math.pi * (np.arange(-24, 25) * p / width) ** 2) for p in pixels)
+        along, across = (w / w.sum() for w in windows)
+        added = np.sum(np.diff(np.pad(along, 2), 2) ** 2) * np.sum(across**2) * (3e-8) ** 2 / 12
+        expected.append(added / np.mean(np.diff(ready.used.heights, 2, axis=axis) ** 2))
+    assert shares(ready)["rounding"] == pytest.approx(max(expected), rel=0.02)
 
 
 @pytest.mark.parametrize("turned", [False, True])

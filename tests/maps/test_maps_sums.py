@@ -155,6 +155,7 @@ def test_hidden_caps_by_quadrature(overlap, blur):
         heights, bends = np.append(z, [-9e-6, 9e-6]), np.append(np.full(50, 1 / radius), [2e4, 1e4])
         pairs = by_caps(counted(heights, bends, area=200 / eta / share), 0.0)
         assert [x for x, _ in pairs] == pytest.approx([eta, radius, sigma], rel=1e-7)
+        assert pairs[1][1] == pytest.approx(1 / bends.mean() - radius, rel=1e-9)  # median and mean differ
     else:
         assert back[0] > _unhidden(eta * share, radius, sigma * std, 0.0)[0]
 
