@@ -48,7 +48,7 @@ from analytic.equations import (
 from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous, Table
 from analytic.height_rule import Fluctuations, HeightRule
 from analytic.heights import ExponentialHeights, Gaussian, HeightLaw, Weibull
-from analytic.integrals import fn, fn_paper, fn_scaled, ratio_at_equal_load
+from analytic.integrals import fn, fn_paper, ratio_at_equal_load
 from analytic.interaction import Interaction
 from analytic.joint import Joint
 from analytic.laws import (
@@ -98,7 +98,7 @@ __all__ = [
     "ScipyHeights", "SpectralMoments", "Surface", "Table", "Weibull", "ZhaoMaiettaChang",
     "area", "area_per_load", "area_per_load_ratio", "barber_conductance", "bends", "composite_modulus",
     "conductance", "contacts", "cooper_mikic_yovanovich", "extent", "first_negative", "fn", "fn_paper",
-    "fn_scaled", "is_data", "load", "mean", "mean_absolute_slope", "mean_modulus", "mikic_elastic", "name_of",
+    "is_data", "load", "mean", "mean_absolute_slope", "mean_modulus", "mikic_elastic", "name_of",
     "plasticity_index", "quantity_of", "ratio_at_equal_load", "resolved", "resolved_breaks", "stiffness",
     "stiffness_ratio", "summit_plasticity_index", "yielding_share",
 ]  # fmt: skip

@@ -22,8 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from analytic.arrays import Array, Ints
-from analytic.exact_law import SCORES, between, cells_between, scores_of, shares_upto
-from analytic.height_rule import HeightRule
+from analytic.exact_law import SCORES, between, in_cells, scores_of, shares_upto
 from analytic.measured_summits import MeasuredHeights
 from analytic.quadrature import gauss_legendre
 from analytic.quantities import quantity_of
@@ -125,9 +124,12 @@ def _integrated(
     last: tuple[Array, Array], nodes: int,
 ) -> tuple[Array, Array]:  # fmt: skip
     """Means and standard deviations of the separation and of each sum, from those at the last separation."""
-    high, (start, variance) = ends[-1], last
-    change = np.zeros_like(start)
-    places, widths = _lifts(*ends, nodes)
+    (low, middle, high), (start, variance), change = ends, last, np.zeros_like(last[0])
+    x, w = gauss_legendre(nodes)  # as many on each side of the middle, closer in the shorter half
+    u, ratio = 2 * x - 1, math.log((high - middle) / (middle - low))
+    unit = (high - middle) / (math.expm1(ratio) / ratio if ratio else 1.0)
+    places = middle + unit * (np.expm1(ratio * u) / ratio if ratio else u)
+    widths = 2 * w * unit * np.exp(ratio * u)
     alone = _deepest(model, several[0], value, places)
     for h, width, penetration in zip(places.tolist(), widths, alone.tolist(), strict=True):
         lower, _, (rates, of_squares) = _gains(model, several, value, h, penetration)
@@ -135,14 +137,6 @@ def _integrated(
         squares = np.append(2 * (high - h) * lower, of_squares - 2 * start[1:] * rates)
         variance = variance + width * squares
     return start + change, np.sqrt(np.maximum(variance - change**2, 0.0))
-
-
-def _lifts(low: float, middle: float, high: float, nodes: int) -> tuple[Array, Array]:
-    """Nodes and weights in the separation, as many on each side of the middle, closer in the shorter half."""
-    x, w = gauss_legendre(nodes)
-    u, ratio = 2 * x - 1, math.log((high - middle) / (middle - low))
-    unit = (high - middle) / (math.expm1(ratio) / ratio if ratio else 1.0)
-    return middle + unit * (np.expm1(ratio * u) / ratio if ratio else u), 2 * w * unit * np.exp(ratio * u)
 
 
 def _ends(model: Any, given: str, value: float) -> tuple[float, float, float]:
@@ -175,32 +169,34 @@ def _gains(
         return np.asarray(h + np.multiply.outer(_PARTS, own))
 
     rule = model.rule(at, several, parts)
+    units = np.array([quantity_of(name).scale(model.surface) for name in several])[:, None]
     terms = rule.terms(several, at, model.grading, model.ways).reshape(-1, len(several), at.size)
-    now, near, far = np.moveaxis(terms * _units(model, several)[:, None], -1, 0)
-    p, added = np.append(rule.probabilities, rule.below), np.append(now[:, 0], 0.0)
-    rates = rule.probabilities * _rate(now, near, far, step).T
-    rates_of_squares = rule.probabilities * _rate(now**2, near**2, far**2, step).T
-    in_cells, weights, *marks = _cells(model, several, h, rule, now, float(at[-1]))
-    sum_of, square = n * rule.probabilities @ np.column_stack([now[:, 0], now[:, 0] ** 2])
+    values = np.moveaxis(terms * units, 0, -1)  # here, one and two steps on: shape (several, 3, heights)
+    means, squares = (rule.probabilities * values**k for k in (1, 2))
+    low, high, own = in_cells(model, several, h, rule, _CELLS, float(at[-1]))
+    cells = (low + high).T / 2 * units  # what asperities add in cells
+    p, added = np.append(rule.probabilities, rule.below), np.append(values[0, 0], 0.0)
+    sum_of, square = (float(n * each[0, 0].sum()) for each in (means, squares))
     spread = math.sqrt(square if poisson else max(square - sum_of**2 / n, 0.0))
-    least = min(float(sum_of), value) - _SPREADS * spread
+    least = min(sum_of, value) - _SPREADS * spread
     start = max(least, 0.0)
     width = (value - start) / (_GRID - 1)
     bear = shares_upto(model, given, h, n - two, np.asarray(start + width * np.arange(_GRID)))
     left, none = (value - start - added) / width, bear[0] if start == 0 else 0.0
-    beside = _beside(left, in_cells / width, bear, none)
+    beside = _beside(left, cells[0] / width, bear, none)
     bears = np.interp(left, np.arange(_GRID), bear, left=0.0)
-    bearable = bears if poisson else beside(weights) + rule.below * bears
-    others = np.array([(n - one) * beside(each)[:-1] for each in marks])
+    bearable = bears if poisson else beside(own) + rule.below * bears
+    others = np.array([(n - one) * beside(own * each)[:-1] for each in cells])
 
-    def over_surfaces(own: Array, of_squares: Array, pairs: int) -> Array:
-        """Sum over asperities what each adds to means and, with all others, to mean squares."""
-        with_others = pairs * np.einsum("ij,ij->i", own, others)
-        return np.asarray(n * np.array([own @ bearable[:-1], of_squares @ bearable[:-1] + with_others]))
+    def over_surfaces(weights: Sequence[float], pairs: int) -> Array:
+        """Sum what asperities add, by weights of the steps, to means and, with others, to mean squares."""
+        added, of_squares = (np.asarray(weights) @ each for each in (means, squares))
+        with_others = pairs * np.einsum("ij,ij->i", added, others)
+        return np.asarray(n * np.array([added @ bearable[:-1], of_squares @ bearable[:-1] + with_others]))
 
     lower = bearable[-1] if poisson else p @ bearable
-    held, squares = (rule.probabilities * (now**k).T for k in (1, 2))
-    return float(lower), over_surfaces(held, squares, 1), over_surfaces(rates, rates_of_squares, 2)
+    rate = np.array([-3.0, 4.0, -1.0]) / (2 * step)
+    return float(lower), over_surfaces((1.0, 0.0, 0.0), 1), over_surfaces(rate.tolist(), 2)
 
 
 def _beside(left: Array, cells: Array, bear: Array, none: float) -> Callable[[Array], Array]:
@@ -222,32 +218,6 @@ def _beside(left: Array, cells: Array, bear: Array, none: float) -> Callable[[Ar
         return np.asarray(np.interp(left, points, both, left=0.0) + none * alone)
 
     return sums
-
-
-def _rate(now: Array, near: Array, far: Array, step: float) -> Array:
-    """By how much values rise with each unit that a surface comes nearer, from those one and two steps on."""
-    return np.asarray((4 * (near - now) - (far - now)) / (2 * step))
-
-
-def _cells(model: Any, several: Sequence[str], h: float, rule: Any, at_nodes: Array, lowest: float) -> Array:
-    """Return what an asperity adds to the given sum, its probability, and that times all that it adds.
-
-    In cells of the heights between the nodes of a rule, with the means of that; shape (2 + several, cells).
-    """
-    p = rule.probabilities
-    whole = np.stack([at_nodes[:, 0], p, *(p * at_nodes.T)])
-    if not p.size:
-        return whole
-    left, wide, p, ratios = cells_between(model, rule, _CELLS, lowest)
-    cells = HeightRule(left + wide / 2, p, rule.below, ratios)
-    values = cells.terms(several, [h], model.grading, model.ways) * _units(model, several)
-    found = np.stack([values[:, 0], p, *(p * values.T)])
-    found[2:] *= (whole[2:].sum(axis=1) / found[2:].sum(axis=1))[:, None]
-    return found
-
-
-def _units(model: Any, names: Sequence[str]) -> Array:
-    return np.array([quantity_of(name).scale(model.surface) for name in names])
 
 
 def _deepest(model: Any, given: str, value: float, h: Array, ratios: Array | None = None) -> Array:

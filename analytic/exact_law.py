@@ -1,7 +1,7 @@
 """The exact law of a finite surface: of a sum over its asperities, and of the separation, without a draw."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from typing import Any
@@ -44,30 +44,35 @@ def distribution_of(model: Any, quantity: str, h: float, *, other: bool = False)
 
 def one_asperity(model: Any, quantity: str, h: float, cells: int) -> OneAsperity:
     """Return what one asperity adds, over the scale of the quantity, by cells of heights."""
-    rule = model.rule([h], [quantity])
-    low = high = _added(model, quantity, h, rule)
-    p, mean = rule.probabilities, float(rule.probabilities @ low)
-    if p.any() and not isinstance(model.heights, MeasuredHeights):
-        lowest = max(min(h, model.ways.of(quantity).lowest(h)), model.heights.support[0])
-        left, wide, p, ratios = cells_between(model, rule, cells, lowest)
-        at = np.concatenate([left + _JUST * wide, left + wide])  # right of where contacts begin
-        ratios = None if ratios is None else np.tile(ratios, 2)
-        nodes = replace(rule, heights=at, probabilities=0 * at, ratios=ratios)
-        low, high = _added(model, quantity, h, nodes).reshape(2, -1)
-        share = (mean - (p * (low + high)).sum() / 2) / ((p * (np.abs(low) + np.abs(high))).sum() / 2)
-        low, high = low + share * np.abs(low), high + share * np.abs(high)
+    lowest = min(h, model.ways.of(quantity).lowest(h))
+    low, high, p = in_cells(model, [quantity], h, model.rule([h], [quantity]), cells, lowest)
+    low, high = low[:, 0], high[:, 0]
     touching = ((low != 0) | (high != 0)) & (p > 0)
     low, high, p = (x[touching] for x in (np.minimum(low, high), np.maximum(low, high), p))
     order = np.argsort(low + high)
     return OneAsperity(low[order], high[order], p[order], model.number, model.count == "poisson")
 
 
-def _added(model: Any, quantity: str, h: float, rule: HeightRule) -> Array:
-    """Return what asperities at the nodes of a rule add, over the scale of the quantity."""
-    return rule.terms([quantity], [h], model.grading, model.ways)[:, 0]
+def in_cells(
+    model: Any, quantities: Sequence[str], h: float, rule: HeightRule, cells: int, lowest: float
+) -> tuple[Array, Array, Array]:
+    """Return what asperities add at both ends of cells between the nodes of a rule, and probabilities.
+
+    Over scales, shape (cells, quantities). Listed heights are cells of no width; others keep the means.
+    """
+    at_nodes, p = rule.terms(quantities, [h], model.grading, model.ways), rule.probabilities
+    if not p.any() or isinstance(model.heights, MeasuredHeights):
+        return at_nodes, at_nodes, p
+    left, wide, own, ratios = _cells_between(model, rule, cells, max(lowest, model.heights.support[0]))
+    at = np.concatenate([left + _JUST * wide, left + wide])  # right of where contacts begin
+    nodes = HeightRule(at, 0 * at, rule.below, None if ratios is None else np.tile(ratios, 2))
+    low, high = np.split(nodes.terms(quantities, [h], model.grading, model.ways), 2)
+    missing, size = 2 * p @ at_nodes - own @ (low + high), own @ (np.abs(low) + np.abs(high))
+    share = missing / np.where(size > 0, size, 1.0)
+    return low + share * np.abs(low), high + share * np.abs(high), own
 
 
-def cells_between(
+def _cells_between(
     model: Any, rule: Any, cells: int, lowest: float
 ) -> tuple[Array, Array, Array, Array | None]:
     """Return the lower ends of cells between the nodes of a rule, widths, probabilities, and ratios of radii.
@@ -123,7 +128,18 @@ def scores_of(
     may rise with the separation are a ValueError.
     """
     start = float(model.separation_at(quantity, value))
-    _check_falling(model, quantity, start)
+    rule = model.rule([start], [quantity])
+    fall = model.ways.loading.falls(quantity_of(quantity).base, model.grading(rule.heights))
+    if fall == 0 or np.any(rule.terms([quantity], [start], model.grading, model.ways) < 0):
+        raise ValueError(
+            f"quantity = {quantity!r}: it is negative for some asperities, and sums may increase with the "
+            "separation; use a modulus >= 0 and a law without adhesion"
+        )
+    if fall:
+        raise ValueError(
+            f"quantity = {quantity!r}: it decreases where the law changes to its piece {fall}, and sums "
+            f"may increase with the separation; use the load"
+        )
 
     @cache
     def score(h: float) -> float:
@@ -168,19 +184,3 @@ def shares_upto(
         return np.where(values >= 0, 1.0, 0.0)
     one = replace(one_asperity(model, quantity, h, _CELLS[other] // 4), number=number)
     return shares_at(one, values / quantity_of(quantity).scale(model.surface), _POINTS[other] // 8)
-
-
-def _check_falling(model: Any, quantity: str, h: float) -> None:
-    """Refuse sums that may rise with the separation."""
-    rule = model.rule([h], [quantity])
-    fall = model.ways.loading.falls(quantity_of(quantity).base, model.grading(rule.heights))
-    if fall == 0 or np.any(_added(model, quantity, h, rule) < 0):
-        raise ValueError(
-            f"quantity = {quantity!r}: it is negative for some asperities, and sums may increase with the "
-            "separation; use a modulus >= 0 and a law without adhesion"
-        )
-    if fall:
-        raise ValueError(
-            f"quantity = {quantity!r}: it decreases where the law changes to its piece {fall}, and sums "
-            f"may increase with the separation; use the load"
-        )

@@ -20,7 +20,6 @@ from analytic.curvature import MEAN_CURVATURE, RandomCurvature
 from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.laws.branch import Branch
-from analytic.laws.law import ContactLaw
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
 from analytic.quadrature import NODES, SPANS, TINY, WIDEST, ends_of, in_pieces, regular_edges
 from analytic.resolution import resolved_breaks
@@ -31,17 +30,6 @@ Cuts = Callable[[Array], Array]  # of ratios of radii: heights, shape (cuts, rad
 _TOGETHER = 2**17  # terms that are found together: a cache holds them
 _DIVERGES = 4  # power of the radius of a summit that has no mean
 _NARROW, _PER_NARROW, _PER_PIECE = 0.25, 16, 32  # of many radii: heights of a narrow piece, and points
-
-
-def _check(s: Array, modulus: Array, contact: ContactLaw) -> None:
-    """Nothing yields at a negative modulus."""
-    negative = np.flatnonzero(modulus < 0)
-    if negative.size:
-        k = negative[-1]
-        raise ValueError(
-            f"grading: E*(s)/E* = {modulus[k]:.4g} at s = {s[k]:.4g}, and law = {contact.name!r} needs a "
-            "modulus >= 0; clip it (clip = true), or use larger separations"
-        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,8 +141,12 @@ class HeightRule:
         Or with `slope` how that rises as it is pressed, within a piece of the law.
         """
         h, modulus = np.asarray(separations, dtype=np.float64), grading(self.heights)
-        if not ways.law.elastic:
-            _check(self.heights, modulus, ways.law)
+        if not ways.law.elastic and modulus.min(initial=0.0) < 0:  # nothing yields there
+            k = np.flatnonzero(modulus < 0)[-1]
+            raise ValueError(
+                f"grading: E*(s)/E* = {modulus[k]:.4g} at s = {self.heights[k]:.4g}, and law = "
+                f"{ways.law.name!r} needs a modulus >= 0; clip it (clip = true), or use larger separations"
+            )
         terms = np.zeros((self.heights.size, len(quantities), h.size))
         for branch in ways.among(quantities):
             which = [k for k, name in enumerate(quantities) if ways.of(name) == branch]
@@ -220,17 +212,6 @@ class Fluctuations:
         powers = reduce(np.multiply, [self.parts] * k)  # ten times as fast as **
         found = np.einsum("i,ij->j", self.probabilities, powers)  # in this thread alone
         return np.where(k * self.radius < _DIVERGES, found, np.inf)
-
-    def combined(self, rates: Array, mean: Array) -> "Fluctuations":
-        """Return those of quantities that deviate at these rates with each of the sums, to first order.
-
-        Rates have the shape (sums, quantities, separations).
-        """
-        sums, _, separations = rates.shape
-        shaped = self.parts.reshape(-1, sums, separations)
-        parts = np.einsum("isk,sqk->iqk", shaped, rates).reshape(len(shaped), -1)
-        radius = np.where(rates != 0, self.radius.reshape(sums, 1, separations), 0.0).max(axis=0)
-        return Fluctuations(self.probabilities, mean, parts, radius.ravel())
 
     def products(self) -> Array:
         """Return the mean products of all columns, shape (columns, columns)."""

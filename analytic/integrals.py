@@ -49,29 +49,7 @@ def quotient(
 def fn_scaled(
     n: float, h: ArrayLike, grading: Grading | None = None, *, heights: HeightLaw = GAUSSIAN
 ) -> Array:
-    """Return F_n or F*_n relative to the density at the separation.
-
-    Parameters
-    ----------
-    n : float
-        Power of the approach, not negative.
-    h : array_like
-        Reduced separations d/sigma, any shape.
-    grading : Grading, optional
-        E*(s)/E*; default: homogeneous.
-    heights : HeightLaw, optional
-        Law of the heights.
-
-    Returns
-    -------
-    ndarray
-        ``F(h)/phi(h)`` for h >= 0, ``F(h)`` for h < 0, in the shape of `h`; for another law ``F(h)``.
-
-    Raises
-    ------
-    ValueError
-        If `n` is negative or not finite, or a separation is not finite.
-    """
+    """Return ``F(h)/phi(h)`` for h >= 0, else ``F(h)``, as of laws of heights that are not Gaussian."""
     h = np.asarray(h, dtype=np.float64)
     if not 0 <= n < np.inf:
         raise ValueError(f"n = {n!r}: give a finite number that is not negative")

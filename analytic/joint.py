@@ -154,19 +154,19 @@ class Joint:
         ValueError
             If its rms height is not known, not above that of its summits, or given twice.
         """
-        sigma = surface.sigma
-        if self.held is None:
+        gas, sigma, rms = self.held, surface.sigma, self.rms
+        if gas is None:
             return Gap(None, sigma, sigma, 0.0)
+        rise = rise_of_summits(surface, heights, moments, rms)
         if isinstance(heights, Nayak):
-            if self.rms is not None:
-                raise ValueError(f"rms = {self.rms!r}: it follows from the heights; leave it out")
-            return Gap(self.held, sigma, sigma / heights.std, heights.mean / heights.std)
-        rise = rise_of_summits(surface, heights, moments, self.rms)
-        if rise is None:
+            if rms is not None:
+                raise ValueError(f"rms = {rms!r}: it follows from the heights; leave it out")
+            rms = sigma / heights.std
+        elif rms is None and moments is not None:
+            rms = math.sqrt(moments.m0)
+        if rms is None or rise is None:
             raise ValueError("rms: give the root mean square height of the surface (not of its summits), m")
-        rms = math.sqrt(moments.m0) if self.rms is None and moments is not None else self.rms
-        assert rms is not None
-        return Gap(self.held, sigma, rms, rise)
+        return Gap(gas, sigma, rms, rise)
 
 
 def rise_of_summits(

@@ -287,12 +287,8 @@ class MeasuredRadii:
         ValueError
             If they are not drawn, and `n` is not their number.
         """
-        s, c = self._pairs
+        s, c = np.array(self.heights.heights), np.array(self.ratios)
         if not self.heights.resampled:
             return self.heights.rvs(n, rng), c
         which = rng.integers(0, c.size, n)
         return s[which], c[which]
-
-    @cached_property
-    def _pairs(self) -> tuple[Array, Array]:
-        return np.array(self.heights.heights), np.array(self.ratios)

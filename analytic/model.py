@@ -13,6 +13,7 @@ from analytic.height_rule import Fluctuations
 from analytic.interaction import Answer, answer_of, asked
 from analytic.mean_model import MeanModel
 from analytic.quantities import JOINT, Quantity, quantity_of
+from analytic.surface import check_positive
 
 if TYPE_CHECKING:
     from analytic.distribution import Law
@@ -180,10 +181,7 @@ class Model(MeanModel):
         >>> float(model.asperities_for("contacts", 0.0, 0.1).round(6))
         200.0
         """
-        if not (np.isfinite(std_over_mean) and std_over_mean > 0):
-            raise ValueError(
-                f"std_over_mean = {std_over_mean!r}: give a positive finite number, such as 0.01"
-            )
+        check_positive("", std_over_mean=std_over_mean)
         variance, h = self.cumulants(quantity, h).variance, np.asarray(h, dtype=np.float64)
         with np.errstate(divide="ignore", invalid="ignore"):
             if given:
@@ -222,8 +220,9 @@ class Model(MeanModel):
             for term, rate in zip((answer.spots, answer.load), answer.at_means(alone, h)[1], strict=True):
                 if term in columns:
                     rates[columns.index(term), k] += rate * quantity_of(term).scale(self.surface) / unit
-        one: Fluctuations = alone.fluctuations(columns, h)
-        return one.combined(rates, np.concatenate(means))
+        axes = np.einsum("sqk,kl->skql", rates, np.eye(h.size)).reshape(len(columns) * h.size, -1)
+        one: Fluctuations = alone.fluctuations(columns, h).turned(axes)
+        return replace(one, mean=np.concatenate(means))
 
     def distribution(self, quantity: str, h: float) -> "Law":
         """Return the exact distribution over surfaces of a quantity at a separation, as one of `scipy.stats`.

@@ -1,6 +1,6 @@
 """Chebyshev series on pieces: what is left of a slow or unknown function once it is evaluated."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Any, ClassVar
@@ -69,8 +69,9 @@ class PiecewiseSeries:
         kinks: Sequence[float] = (),
         checked: bool = True,
     ) -> None:
-        hold(self, edges=_floats(edges), coefficients=tuple(map(_floats, coefficients)))
-        hold(self, name=str(name)[:_MOST_NAME], kinks=_floats(kinks), checked=checked)
+        rows = (tuple(map(float, c)) for c in coefficients)
+        hold(self, edges=tuple(map(float, edges)), coefficients=tuple(rows))
+        hold(self, name=str(name)[:_MOST_NAME], kinks=tuple(map(float, kinks)), checked=checked)
         pieces = len(self.edges) - 1
         if not 1 <= pieces <= MOST_PIECES or not _rising(self.edges):
             raise ValueError(f"edges: give 2 to {MOST_PIECES + 1} finite heights that increase")
@@ -141,10 +142,6 @@ class PiecewiseSeries:
         left, right = s[change], s[change + 1]
         behind = sign_changes(lambda x, _: self(x), left, right, np.zeros(change.size))
         return tuple(behind.tolist())  # the first heights on the far side
-
-
-def _floats(values: Iterable[float]) -> tuple[float, ...]:
-    return tuple(float(value) for value in values)
 
 
 def _rising(values: tuple[float, ...]) -> bool:

@@ -150,25 +150,13 @@ def resolved_breaks(
     """
     if grading.smooth or not low < high:
         return tuple(np.unique([float(b) for b in grading.breaks if low < b < high]).tolist())
-    return _found_breaks(_Same(grading), low, high, noise_of_one)
-
-
-class _Same:
-    """A grading by identity, for what is remembered of it: an equal function may have changed."""
-
-    def __init__(self, grading: Grading) -> None:
-        self.grading = grading
-
-    def __hash__(self) -> int:
-        return id(self.grading)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and other.grading is self.grading
+    return _found_breaks(grading.__call__, low, high, noise_of_one)
 
 
 @lru_cache(maxsize=_REMEMBERED)
-def _found_breaks(same: _Same, low: float, high: float, noise_of_one: float) -> tuple[float, ...]:
-    grading = same.grading
+def _found_breaks(call: Any, low: float, high: float, noise_of_one: float) -> tuple[float, ...]:
+    """By the method of a grading, which is equal to that of no other: an equal function may have changed."""
+    grading: Grading = call.__self__
     declared = np.unique([float(b) for b in grading.breaks if low < b < high])
     edges = np.unique([low, *declared, *marks(low, high, _WIDEST), high])
     edges = _bisected(_LONG, grading, edges, noise_of_one)

@@ -21,7 +21,7 @@ class RootSeries(PiecewiseSeries):
     """Series of a formula over ``u^2``: in u around first touch, of a later piece in log(u)."""
 
 
-def _resolved_in_root(formula: Formula, low: float, high: float) -> RootSeries:
+def _resolved_in_root(name: str, formula: Formula, low: float, high: float) -> RootSeries:
     """Return the series that stand for a formula, of the first piece from ``low < 0`` on, to 1e-13."""
 
     def over_square(t: Array) -> Array:
@@ -37,8 +37,8 @@ def _resolved_in_root(formula: Formula, low: float, high: float) -> RootSeries:
     if kinks:
         first = "; where it begins, write u**3 for (u*u)**1.5: it is also evaluated at -u" if low < 0 else ""
         raise ValueError(
-            f"it is not smooth between x = {low * abs(low):g} and {high * high:g}: give the penetration of "
-            f"each jump and kink in limits{first}"
+            f"{name}: it is not smooth between x = {low * abs(low):g} and {high * high:g}: give the "
+            f"penetration of each jump and kink in limits{first}"
         )
     return RootSeries(found.edges, found.coefficients)
 
@@ -154,14 +154,12 @@ class CustomLaw(ElasticPlastic):
         kept = [x for x in self.edges if x < x_max]
         ends = np.sqrt([*kept, x_max]).tolist()
         starts = [-ends[0], *ends[:-1]]
-        series: dict[str, list[Formula]] = {"load": [], "area": []}
-        for name, formulas in self._formulas().items():
-            for piece, (low, high) in enumerate(zip(starts, ends, strict=True)):
-                try:
-                    series[name].append(_resolved_in_root(formulas[piece], low, high))
-                except ValueError as error:
-                    raise ValueError(f"{name}[{piece}]: {error}") from None
-        return CustomLaw(series["load"], series["area"], kept, self.critical, self.checked)
+        pairs = list(zip(starts, ends, strict=True))
+        load, area = (
+            [_resolved_in_root(f"{name}[{k}]", formulas[k], *pair) for k, pair in enumerate(pairs)]
+            for name, formulas in self._formulas().items()
+        )
+        return CustomLaw(load, area, kept, self.critical, self.checked)
 
     def given(self) -> dict[str, Any]:
         """Return the number of pieces, and the critical penetration."""

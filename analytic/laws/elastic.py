@@ -78,7 +78,7 @@ class PowerLawGraded(ContactLaw):
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Return the load of a contact, in the shape of `y` and `e`."""
         factor = 3 * (1 + self.k) ** ((self.k - 1) / 2) / (3 + self.k)
-        return factor * self._scale * e * y ** (3 + self.k)
+        return factor * self.H / self.reduced**self.k * e * y ** (3 + self.k)
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
         """Return the radius of a contact; its square is the area over pi R sigma."""
@@ -86,11 +86,8 @@ class PowerLawGraded(ContactLaw):
 
     def stiffness(self, piece: int, y: Array, e: Array) -> Array:
         """Return the stiffness of a spot over 2 E* sqrt(R sigma)."""
-        return np.asarray((1 + self.k) ** ((self.k - 1) / 2) * self._scale * e * y ** (1 + self.k))
-
-    @property
-    def _scale(self) -> Any:
-        return self.H / self.reduced**self.k
+        factor = (1 + self.k) ** ((self.k - 1) / 2) * self.H / self.reduced**self.k
+        return np.asarray(factor * e * y ** (1 + self.k))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import Any
 
 MODULES = {
+    "analytic.integrals": "fn_scaled",
     "mcgw.elasticity.grid": "Grid",
     "mcgw.elasticity.levels": "alone Level LEVELS located Pressed rimless",
     "mcgw.elasticity.located": "balanced beyond_point interaction",

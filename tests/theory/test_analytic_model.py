@@ -25,7 +25,7 @@ def test_the_number_is_that_of_the_surface_unless_given():
 
 
 ON_A_SURFACE = ("load", "area", "contacts", "stiffness", "conductance", "barber_conductance", "area_per_load")
-CALLS = dict.fromkeys(ON_A_SURFACE, (SURFACE, 1.0)) | dict.fromkeys(("fn", "fn_scaled"), (1.5, 1.0))
+CALLS = dict.fromkeys(ON_A_SURFACE, (SURFACE, 1.0)) | {"fn": (1.5, 1.0)}
 CALLS |= dict.fromkeys(("area_per_load_ratio", "stiffness_ratio", "mean_modulus"), (1.0, Exponential(2.0)))
 
 
