@@ -53,6 +53,7 @@ def test_the_table_has_each_mean_of_each_point_in_its_row(sweep):
     assert columns["quantity"] == [x for one in compared.points for x in np.repeat(one.quantities, 3)]
     assert columns["p_of_point"] == [one.verdict.p for one in compared.points for _ in range(12)]
     assert [float(x) for x in columns["grading.gamma"]] == list(np.repeat([0.5, 1.0, 2.0], 36))
+    assert len(mcgw.compare(mcgw.sweep(SCENE, {"grading.gamma": [2.0]})).table()) == 12  # of one point
 
 
 def test_one_verdict_on_all_is_bonferroni_s(sweep):
