@@ -109,7 +109,7 @@ def solve(
     from analytic import quantity_of
     from mcgw.ensemble.solution import solve as solved
     from mcgw.machine.progress import told
-    from mcgw.reports.solved_loads import solutions_table, solutions_text
+    from mcgw.reports.text import solutions_table, solutions_text
 
     if scatter is not None and scatter >= 1:
         raise ValueError(f"--scatter {scatter:g}: give a number between 0 and 1, such as 1%")

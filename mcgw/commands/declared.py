@@ -18,9 +18,9 @@ from mcgw.commands.kinds import JUST_ONE, Call, Kind
 from mcgw.commands.outputs import ALL, NEWS, QUIET, check_outputs, tell_cautions
 
 _HOMES = {  # commands in the order of work, by the files in which they stand; any other has its own
-    "init": "starting", "run": "drawing", "sweep": "drawing", "show": "answers", "compare": "studies",
-    "converge": "studies", "tradeoff": "studies", "merge": "drawing", "solve": "answers",
-    "export": "products", "figures": "products", "report": "products", "surface": "surface", "fit": "fit",
+    "init": "starting", "run": "drawing", "sweep": "drawing", "show": "answers", "compare": "views",
+    "converge": "views", "tradeoff": "views", "merge": "drawing", "solve": "answers",
+    "export": "views", "figures": "views", "report": "views", "surface": "maps", "fit": "maps",
     "elastic": "answers", "warm": "starting", "completion": "starting",
 }  # fmt: skip
 _OTHERS = {*_HOMES.values(), "declared", "kinds", "outputs"}
@@ -90,14 +90,12 @@ def parser_of(names: Sequence[str] = ()) -> argparse.ArgumentParser:
         sub._negative_number_matcher = re.compile(r"-\.?\d")  # no option: a value such as -1MPa
         _add_arguments(sub, function, sections[0] if sections[1:] else "")
         amount = sub.add_mutually_exclusive_group()
-        quiet, verbose = (
-            "print only errors and requested output",
-            "print everything: tables, cautions in full, sources",
+        said: Any = {"dest": "amount", "action": "store_const", "default": NEWS}
+        few = "print only errors and requested output"
+        amount.add_argument("-q", "--quiet", const=QUIET, help=few, **said)
+        amount.add_argument(
+            "-v", "--verbose", const=ALL, help="print everything: tables, cautions in full, sources", **said
         )
-        for names, value, words in ((("-q", "--quiet"), QUIET, quiet), (("-v", "--verbose"), ALL, verbose)):
-            amount.add_argument(
-                *names, dest="amount", action="store_const", const=value, default=NEWS, help=words
-            )
         sub.set_defaults(function=function, command=name)
     return parser
 
@@ -142,11 +140,11 @@ def _options(each: Parameter, kind: Kind, placed: bool, metavar: str, words: str
     choices = kind.choices or tuple(one for one in types if isinstance(one, str))  # of a Literal
     plain = next((one for one in (Path, int, float) if one in types), str)
     found: dict[str, Any] = {"help": words, "default": default, "metavar": metavar or None}
-    found["type"] = Path if kind.file else kind.typed or (str if choices else plain)
+    found["type"] = Path if kind.file else str if choices or kind.read else plain
     if choices:
         found["choices"] = choices
-    if kind.action:
-        found["action"] = kind.action
+    if any(get_origin(one) is dict for one in types):
+        found["action"] = "append"
     elif several and kind.file != "out":
         found["nargs"] = "*" if placed and not must else "+"
     elif placed and not must:
@@ -163,7 +161,10 @@ def execute(function: Command, args: argparse.Namespace) -> int:
     files = (getattr(args, each.name) for each, kind, *_ in parts if kind.file in ("in", "scene"))
     call = Call(args, next((path for path in files if isinstance(path, Path)), None))
     parts.sort(key=lambda part: part[1].file != "out")  # a scene may take its seed from an output
-    values = {each.name: kind.read(getattr(args, each.name), option, call) for each, kind, option, _ in parts}
+    values = {each.name: getattr(args, each.name) for each, *_ in parts}
+    for each, kind, option, _ in parts:
+        if kind.read:
+            values[each.name] = kind.read(values[each.name], option, call)
     check_outputs(call.outputs, call.inputs)
     done = function(**values)
     for source, instead in call.cautious:

@@ -3,7 +3,7 @@
 import logging
 import warnings
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -137,31 +137,23 @@ def _tell_before(scene: "Scene", expected: "Forecast", *, ruled: bool, shared: b
         news(f"forecast: {before(expected, seconds_per_surface(scene, sampler))}")
 
 
-def _value(text: str) -> Any:
-    """Return what a text is as TOML, a number such as .5, or the text."""
-    value = as_value(text)
-    with suppress(ValueError):
-        return float(value) if isinstance(value, str) else value
-    return value
-
-
 def _axes(given: list[str], option: str, call: Call) -> dict[str, list[Any]]:  # noqa: ARG001
     """Return lists of values by key."""
     axes: dict[str, list[Any]] = {}
     for text in given:
         key, words = pair(text, option, "KEY=VALUES, such as grading.gamma=0.2:2:10 or =0.5,1,2")
-        parts = [_value(part) for part in words.split(":")]
+        parts = [as_value(part) for part in words.split(":")]
         if len(parts) == 3 and not any(isinstance(part, str) for part in parts):
             axes[key] = ranged(words, f"{option} {key}")
         else:
-            axes[key] = [_value(word) for word in words.split(",")]
+            axes[key] = [as_value(word) for word in words.split(",")]
     return axes
 
 
 def sweep(
     scene: Cautioned,
     *,
-    over: Annotated[dict[str, list[Any]], Kind(action="append", read=_axes)],
+    over: Annotated[dict[str, list[Any]], Kind(read=_axes)],
     zip: bool = False,  # noqa: A002
     plan: bool = False,
     output: Annotated[Path, file_out(HDF5, "out/{}.sweep.h5", grows=True, dry="plan")],

@@ -40,10 +40,8 @@ class Kind:
     file: Literal["", "in", "scene", "out"] = ""  # a file that is read (of a scene: --set changes it) or made
     words: str = ""  # that the help adds
     choices: tuple[str, ...] = ()
-    typed: type | None = None  # what argparse makes of a word, if that does not follow from the type
-    action: str = ""  # of argparse, likewise
-    # Makes of what was typed (or the default), the option and the call what the function gets.
-    read: Callable[[Any, str, Call], Any] = lambda given, option, call: given  # noqa: ARG005
+    # Makes of the text that was typed (or the default), the option and the call what the function gets.
+    read: Callable[[Any, str, Call], Any] | None = None
     beside: str = ""  # name of a file that is made, where none is given, beside what is read
 
 
@@ -55,21 +53,23 @@ def quantity(unit: str, metavar: str = "", about: str = "") -> Kind:
 
         return parse(given, unit, option) if isinstance(given, str) else given
 
-    return Kind(metavar, about, typed=str, read=read)
+    return Kind(metavar, about, read=read)
 
 
 def values(unit: str) -> Kind:
     """Return the kind of numbers with units, and ranges of them; without a unit, others are left as typed."""
 
-    def read(given: Any, option: str, call: Call) -> Any:
-        single = quantity(unit).read if unit else Kind.read
+    def read(given: Any, option: str, call: Call) -> Any:  # noqa: ARG001
+        from mcgw.formats.units import parse
+
         found: list[Any] = []
         for text in given or ():
-            found += ranged(text, option, unit) if ":" in text else [single(text, option, call)]
+            plain = parse(text, unit, option) if unit and ":" not in text else text
+            found += ranged(text, option, unit) if ":" in text else [plain]
         return found or None
 
     how = "at a constant ratio" if unit in _GEOMETRIC else "at equal steps"
-    return Kind(typed=str, words=f"; or A:B:N for N of them from A to B, {how}", read=read)
+    return Kind(words=f"; or A:B:N for N of them from A to B, {how}", read=read)
 
 
 _GEOMETRIC = ("Pa", "N")  # pressures and loads are at a constant ratio, all else evenly
@@ -102,11 +102,13 @@ def pair(text: str, option: str, form: str) -> tuple[str, str]:
 
 
 def as_value(text: str) -> Any:
-    """Return what a text is as TOML, or the text."""
+    """Return what a text is as TOML, a number such as .5 or 5., or the text."""
     from mcgw.formats.named_files import loads
 
     with suppress(ValueError):
         return loads(f"value = {text}")["value"]
+    with suppress(ValueError):
+        return float(text) if "." in text else text
     return text
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, nullcontext, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,6 @@ from mcgw.machine.progress import watched
 QUIET, NEWS, ALL = range(3)  # only errors; what was made and found; everything
 _AMOUNT = ContextVar("_AMOUNT", default=NEWS)
 _inputs: ContextVar[tuple[Path, ...]] = ContextVar("_inputs", default=())
-_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
 @dataclass(frozen=True)
@@ -92,6 +92,7 @@ def _same_file(one: Path, other: Path) -> bool:
 
 def _faults(output: Output, others: Iterable[Output]) -> Iterator[str]:
     """Why a file may not be written: what is read, a run, another output, what it would replace."""
+    from mcgw.formats.named_files import HDF5 as SIGNATURE
     from mcgw.store.lock import LOCK_FILES, parts_of
 
     path, place = output.path, Path(os.path.realpath(output.path))
@@ -114,12 +115,12 @@ def _faults(output: Output, others: Iterable[Output]) -> Iterator[str]:
     if not path.is_file():
         return
     with open(path, "rb") as file:
-        start = file.read(len(_SIGNATURE))
-    if start == _SIGNATURE:
-        if _holds_results(path):
-            yield "is an ensemble of mcgw, which this would replace"
-        if not set(HDF5.endings) & set(output.format.endings):
-            yield "is an HDF5 file, which this would replace"
+        if file.read(len(SIGNATURE)) != SIGNATURE:
+            return
+    if _holds_results(path):
+        yield "is an ensemble of mcgw, which this would replace"
+    if not set(HDF5.endings) & set(output.format.endings):
+        yield "is an HDF5 file, which this would replace"
 
 
 def _holds_results(path: Path) -> bool:
@@ -148,16 +149,13 @@ def says(amount: int = NEWS) -> bool:
     return _AMOUNT.get() >= amount
 
 
-def news(*lines: object) -> None:
+def news(*lines: object, amount: int = NEWS) -> None:
     """Print what was made, the result, and what to type next."""
-    if says() and lines:
+    if says(amount) and lines:
         print(*lines, sep="\n")
 
 
-def details(*lines: object) -> None:
-    """Print details, with -v only."""
-    if says(ALL) and lines:
-        print(*lines, sep="\n")
+details = partial(news, amount=ALL)  # with -v only
 
 
 def notes(*lines: str) -> None:

@@ -1,4 +1,4 @@
-"""How each finite-element program reads a table, a row each; and a curve as the text of its file."""
+"""Kinds of tables, how each finite-element program reads one, and a curve as the text of its file."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.arrays import Array
-from mcgw.exports.curves import KINDS, Kind
 from mcgw.machine.terminal import brief, one_line
 from mcgw.scene.scene import Scene
 from mcgw.scene.writing import joint_text
@@ -24,6 +23,32 @@ UNITS = {
         "conductance": (1e-3, "mW/(mm^2 K)"), "current": (1e-3, "mA/(mm^2 V)"),
     },
 }  # fmt: skip
+
+
+class Kind(NamedTuple):
+    """A table of "pressure", "conductance" or "stiffness" against "gap" or "pressure"."""
+
+    quantity: str
+    against: str
+
+    @property
+    def name(self) -> str:
+        """Quantity and argument."""
+        return "-".join(self)
+
+    def answer(self, scene: Scene) -> str:
+        """Return the tabulated answer of a scene; the conductance is that of the joint, if there is one."""
+        if self.quantity != "conductance":
+            return self.quantity
+        return "contact_conductance" if scene.gas is None else "joint_conductance"
+
+    def stays(self, scene: Scene) -> bool:
+        """Whether gas still conducts at zero load."""
+        return self.quantity == "conductance" and scene.filled is not None and scene.filled.gas is not None
+
+
+_ALL = (("pressure", "gap"), ("conductance", "pressure"), ("conductance", "gap"), ("stiffness", "pressure"))
+KINDS = {kind.name: kind for kind in (Kind(*each) for each in _ALL)}
 
 
 @dataclass(frozen=True)

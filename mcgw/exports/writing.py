@@ -1,4 +1,7 @@
-"""``mcgw.export``: write a table, one file for each curve and one for all; or all columns as JSON."""
+"""``mcgw.export``: write a table, one file for each curve and one for all; or all columns as JSON.
+
+Its numbers: mean and quantiles over surfaces against gap or pressure, SI.
+"""
 
 import json
 import re
@@ -11,19 +14,31 @@ from typing import Any
 import numpy as np
 
 from analytic.arrays import Array
+from mcgw.ensemble.at_load import pressures_of
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.exports.curves import KINDS, at_gaps, at_pressures, quantile_name, surfaces_for
-from mcgw.exports.programs import PROGRAMS, UNITS, Sheet
+from mcgw.ensemble.simulation import simulate
+from mcgw.ensemble.solution import solutions
+from mcgw.exports.programs import KINDS, PROGRAMS, UNITS, Kind, Sheet
 from mcgw.formats.files import together, write_whole
-from mcgw.formats.table import Column, Table
-from mcgw.scene.kinds import argument, as_toml
+from mcgw.formats.table import Column, Table, evenly
+from mcgw.scene.kinds import List, Number, Whole, Word, arguments
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.ensembles import open_ensemble, read_attributes
 
 SCHEMA = Path(__file__).with_name("contact-table.schema.json")
 _QUANTILES = (0.05, 0.95)
-_MOST_POINTS = 10_000
+_MOST = 2000  # surfaces drawn again where an ensemble keeps statistics alone
+_ARGUMENTS = {
+    "to": Word((*PROGRAMS, "json")), "table": Word(tuple(KINDS)), "units": Word(tuple(UNITS)),
+    "points": Whole(2, 10_000, "give a whole number from 2 to 10000"),
+    "pressures": List(Number("Pa"), least=2, advice="give two or more increasing numbers in Pa"),
+    "quantiles": List(Number(high=1 - 1e-9), 0, advice="give numbers between 0 and 1, each once", once=True),
+}  # fmt: skip
+
+
+# x, rising, and by name means and quantiles, nan where nothing is carried.
+Numbers = tuple[Array, dict[str, Array]]
 
 
 def export(
@@ -92,13 +107,12 @@ def export(
     """
     if to == "json" and (table, quantiles, units) != ("pressure-gap", None, "SI"):
         raise ValueError('to = "json": it has all columns, in SI units; leave out table, quantiles, units')
-    for key, value, known in (
-        ("to", to, (*PROGRAMS, "json")),
-        ("table", table, KINDS),
-        ("units", units, UNITS),
-    ):
-        if value not in known:
-            raise ValueError(f"{key} = {value!r}: choose one of {', '.join(known)}")
+    given = {"to": to, "table": table, "units": units, "points": points}
+    given |= {"pressures": pressures, "quantiles": quantiles}
+    asked = arguments({name: value for name, value in given.items() if value is not None}, _ARGUMENTS)
+    wanted, kind = np.array(asked["pressures"]) if "pressures" in asked else None, KINDS[table]
+    if wanted is not None and np.any(np.diff(wanted) <= 0):
+        raise ValueError(f"pressures = {wanted.tolist()!r}: give two or more increasing numbers")
     if to != "json" and not re.fullmatch(r"[A-Za-z0-9._+-]{1,64}", name := Path(path).name):
         raise ValueError(
             f"path = {name!r}: {to} includes it by name; give a name of at most 64 letters, digits and "
@@ -106,9 +120,6 @@ def export(
         )
     if to != "json" and table not in (taken := PROGRAMS[to].tables):
         raise ValueError(f"table = {table!r}: {to} does not support it; choose one of {', '.join(taken)}")
-    wanted, kind = _pressures(pressures), KINDS[table]
-    if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= _MOST_POINTS:
-        raise ValueError(f"points = {points!r}: give a whole number from 2 to {_MOST_POINTS}")
     source = open_ensemble(what) if isinstance(what, str | Path) else what
     if not isinstance(source, Scene | Ensemble):
         raise ValueError(f"{type(what).__name__}: give a scene, an ensemble, or the file of an ensemble")
@@ -126,7 +137,7 @@ def export(
             "joint.conductivities: missing for a table of conductance; give conductivities = [k1, k2] in "
             "W/(m K), or resistivity, in the scene"
         )
-    shares = _quantiles(quantiles, source.n_surfaces)
+    shares = asked.get("quantiles", _QUANTILES if source.n_surfaces > 1 else ())
     if kind.against == "gap":
         x, columns = at_gaps(source, kind, wanted, points, shares)
     else:
@@ -155,31 +166,7 @@ def files_of_export(path: str | Path, quantiles: Sequence[float] | None = None) 
     return [path, *beside, path.with_name(f"{path.stem}.all.csv")]
 
 
-def _pressures(given: Any) -> Array | None:
-    if given is None:
-        return None
-    plain = as_toml(given)
-    listed = plain if isinstance(plain, list) else [plain]
-    found = np.array([argument("pressures", x, "Pa") for x in listed])
-    if found.size < 2 or np.any(np.diff(found) <= 0):
-        raise ValueError(f"pressures = {listed!r}: give two or more increasing numbers")
-    return found
-
-
-def _quantiles(given: Sequence[float] | None, n_surfaces: int) -> tuple[float, ...]:
-    if given is None:
-        return _QUANTILES if n_surfaces > 1 else ()
-    found = tuple(float(q) for q in given)
-    if len(set(found)) < len(found) or not all(0 < q < 1 for q in found):
-        raise ValueError(
-            f"quantiles = {list(found)!r}: give numbers between 0 and 1, each once, such as 0.05"
-        )
-    return found
-
-
-def _contact_table(
-    source: Scene | Ensemble, pressures: Array | None, points: int, digest: str
-) -> dict[str, Any]:
+def _contact_table(source: Scene | Ensemble, pressures: Any, points: int, digest: str) -> dict[str, Any]:
     """Return what a file holds, by ``contact-table.schema.json``: means where they carry a load, SI."""
     scene = source if isinstance(source, Scene) else source.scene
     conducts = scene.film is not None and (source is scene or "conductance_si" in scene.quantities)
@@ -217,3 +204,96 @@ def _contact_table(
         },
         "validity": scene.validity().verdict,
     }
+
+
+def surfaces_for(
+    source: Scene | Ensemble, needs: tuple[str, ...], pressures: Array | None, points: int
+) -> Ensemble:
+    """Return the ensemble itself; of a scene its surfaces, with only what a table against the gap needs.
+
+    They are drawn at so many separations, evenly between the lowest and the highest of the scene, or at those
+    where the mean surface has the pressures.
+    """
+    if isinstance(source, Ensemble):
+        if missing := [name for name in needs if name not in source.scene.quantities]:
+            raise ValueError(
+                f"contact.quantities: the ensemble has no {', '.join(missing)}; give its scene instead"
+            )
+        return source
+    h = np.linspace(min(source.separations), max(source.separations), points)
+    if pressures is not None:
+        h = np.array([float(source.theory.separation_at("pressure", p)) for p in pressures])
+    changes = {"keep": "sums", "unload_from": None, "rel_err": None, "max_seconds": None}
+    return simulate(source.replace(separations=tuple(h.tolist()), quantities=needs, **changes))
+
+
+def at_gaps(
+    source: Scene | Ensemble, kind: Kind, pressures: Array | None, points: int, shares: tuple[float, ...]
+) -> Numbers:
+    """Return mean and quantiles of these shares over surfaces at equal gap, m.
+
+    The pressures are those of the rows of a scene; the first and the last bound those of an ensemble, which
+    has its own separations.
+    """
+    needs = ("load", "conductance_si") if kind.quantity == "conductance" else ("load",)
+    ensemble = surfaces_for(source, needs, pressures, points)
+    h, rows = np.unique(ensemble.separations, return_index=True)
+    mean = ensemble.mean("pressure")[rows]
+    if np.any(mean < 0):
+        raise ValueError(
+            f"contact.law: surfaces attract each other (mean pressure {mean.min():.3g} Pa at d/sigma = "
+            f"{h[np.argmin(mean)]:g}), and a contact table has no negative pressures; give a law without "
+            "adhesion"
+        )
+    if ensemble is source:
+        if pressures is not None:
+            rows = rows[(mean >= pressures[0] * (1 - 1e-9)) & (mean <= pressures[-1] * (1 + 1e-9))]
+        rows = rows[evenly(len(rows), points)]
+    some = ensemble
+    if shares and ensemble.scene.keep == "statistics":  # its first surfaces are drawn again
+        drawn = ensemble.scene.drawn_by(ensemble.sampler)
+        some = simulate(drawn, keep="sums", n_surfaces=min(ensemble.n_surfaces, _MOST))
+    name = kind.answer(ensemble.scene)
+    values = [ensemble.mean(name)[rows], *(some.quantile(name, share)[rows] for share in shares)]
+    return _checked(kind, shares, ensemble.separations[rows] * ensemble.scene.surface.sigma, values)
+
+
+def at_pressures(
+    scene: Scene, kind: Kind, pressures: Array | None, points: int, shares: tuple[float, ...]
+) -> Numbers:
+    """Return mean and quantiles over specimens that all carry the same load: those of `mcgw.solve`."""
+    if pressures is None:
+        pressures = pressures_of(scene, points)
+    area, name = scene.surface.nominal_area, kind.answer(scene)
+    solved = solutions(scene, "load", (area * pressures).tolist())
+    values = [np.array([each.value[name] for each in solved])]
+    values += [np.array([np.quantile(each.surfaces[name], share) for each in solved]) for share in shares]
+    per = area if kind.quantity == "stiffness" else 1.0
+    return _checked(kind, shares, pressures, [each / per for each in values])
+
+
+def _checked(kind: Kind, shares: tuple[float, ...], x: Array, values: list[Array]) -> Numbers:
+    """Name the numbers, without rows that carry nothing; refuse what is not monotonic."""
+    named = dict(zip(["mean", *map(quantile_name, shares)], values, strict=True))
+    for name, every in named.items():
+        at, y = x[every > 0], every[every > 0]
+        if at.size < 2:
+            raise ValueError(
+                f"{kind.name}, {name}: {at.size} point(s) with load; give more or smaller separations, or a "
+                "wider range of pressures"
+            )
+        steps = np.diff(y) * (-1 if kind.against == "gap" else 1)
+        if np.any(steps <= 0):
+            worst = at[int(np.argmin(steps))]
+            raise ValueError(
+                f"{kind.name}, {name}: is not monotone at {kind.against} = {worst:.4g}, as programs require; "
+                "give fewer points, or a contact law without jumps"
+            )
+    carried = values[0] > 0
+    return x[carried], {name: np.where(y > 0, y, np.nan)[carried] for name, y in named.items()}
+
+
+def quantile_name(quantile: float) -> str:
+    """Name of a quantile in file names: q05 for 0.05."""
+    digits = f"{100 * quantile:.6g}"
+    return f"q{digits.zfill(2)}" if "." not in digits else f"q{digits}"

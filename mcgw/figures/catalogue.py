@@ -9,9 +9,17 @@ import numpy as np
 
 from analytic import Hertz, quantity_of
 from mcgw.ensemble.simulation import simulate
-from mcgw.figures.compared import SCENE, Compared
+from mcgw.figures.compared import (
+    POWERS,
+    SCENE,
+    Compared,
+    Mean,
+    Modulus,
+    over_separation,
+    ratio,
+)
 from mcgw.figures.panels import GAMMA, PRESSURE, SEPARATION, FigureData, Panel, Series
-from mcgw.figures.ratios import POWERS, Mean, Modulus, of_reference, over_gamma, over_separation, spread
+from mcgw.figures.studies import spread, spread_panel
 from mcgw.figures.style import power_of_ten, prefixed
 from mcgw.machine.progress import steps
 from mcgw.scene.scene_file import scene_from
@@ -66,19 +74,10 @@ def against_separation(f: Compared, *, title: str, quantity: str, words: str, un
 
 def at_separation(f: Compared, *, title: str, symbol: str, how: Mean) -> FigureData:
     """Show a ratio; of a sweep a panel for stiffer and one for softer tips."""
-    ylabel = of_reference(f, symbol)
-    if not f.swept:
-        panel = _over_separation(f, "", ylabel, how)
-        return FigureData(title, f"Reference: {f.reference}, the same surface. {f.caption()}", (panel,))
-    parts = (("a  stiffer tips", _STIFFER), ("b  softer tips", _SOFTER))
-    panels = (over_gamma(f, name, ylabel, how, *gammas, _AT) for name, gammas in parts)
-    return FigureData(title, f.caption(), tuple(panels))
-
-
-def _over_separation(f: Compared, title: str, ylabel: str, how: Mean) -> Panel:
-    """Show a ratio to the reference for each other scene."""
-    series = tuple(over_separation(f, label, how) for label in f.others)
-    return Panel(title, SEPARATION, ylabel, series, level=1.0)
+    parts = (("a  stiffer tips", _STIFFER), ("b  softer tips", _SOFTER)) if f.swept else (("", _STIFFER),)
+    panels = (ratio(f, name, symbol, how, *gammas, _AT) for name, gammas in parts)
+    said = "" if f.swept else f"Reference: {f.reference}, the same surface. "
+    return FigureData(title, said + f.caption(), tuple(panels))
 
 
 def equal_load(f: Compared) -> FigureData:
@@ -90,12 +89,7 @@ def equal_load(f: Compared) -> FigureData:
     panels = []
     for key, (name, how) in zip("abcd", shown, strict=False):
         symbol = quantity_of(*how.above).symbol.removesuffix("ρ")  # the resistivity is that of both
-        title, ylabel = f"{key}  {name}", of_reference(f, f"{symbol}/{symbol}")
-        panels.append(
-            over_gamma(f, title, ylabel, how, *_LOADED, _AT_LOAD)
-            if f.swept
-            else _over_separation(f, title, ylabel, how)
-        )
+        panels.append(ratio(f, f"{key}  {name}", f"{symbol}/{symbol}", how, *_LOADED, _AT_LOAD))
     title = "At equal load the trend reverses: stiffer tips conduct less" if f.swept else "At the same load"
     which = "homogeneous surface" if f.swept else f"reference ({f.reference}, the same surface)"
     return FigureData(title, f"d/σ is that of the {which} and sets the load. {f.caption()}", tuple(panels))
@@ -132,10 +126,9 @@ def mean_moduli(f: Compared) -> FigureData:
         just = tuple(
             Series(f"d/σ = {h:g}", _MODULI[0], _MODULI[0] - (_MODULI[0] - 1) * np.exp(-h)) for h in _AT
         )
-        ylabel = of_reference(f, r"\psi/\psi")
         panels = [Panel("a  as in the paper: just touching, s = d/σ", GAMMA, _PSI, just, level=1.0)]
         for weight, words in _TITLES.items():
-            panels.append(over_gamma(f, words, ylabel, Modulus(weight), *_MODULI, _AT))
+            panels.append(ratio(f, words, r"\psi/\psi", Modulus(weight), *_MODULI, _AT))
         return FigureData(title, caption, tuple(panels))
     plain = (
         type(f.scene.law) is Hertz and f.scene.summits is None
@@ -156,8 +149,7 @@ def mean_moduli(f: Compared) -> FigureData:
 def fluctuations(f: Compared) -> FigureData:
     """Show the standard deviation over the mean: of a sweep from a hundred asperities to a million."""
     if not f.swept:
-        series = tuple(spread(name, f.scene, name, f.line, f.drawn(SCENE)) for name in _SPREADING)
-        panel = Panel("", SEPARATION, "std / mean", series, ("linear", "log"), level=1.0)
+        panel = replace(spread_panel("", f.drawn(SCENE), f.line, _SPREADING), level=1.0)
         size = f"{f.scene.surface.nominal_area * 1e6:g} mm²"
         return FigureData(f"Scatter of surfaces of {size}", f.caption(), (panel,))
     scene = f.scene.replace(keep="sums", separations=np.linspace(0, 4, 9), quantities=_SPREADING)

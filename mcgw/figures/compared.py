@@ -1,35 +1,42 @@
-"""Scenes on the same surfaces side by side: one and what it is measured by, or a preset swept over gamma."""
+"""Scenes on the same surfaces side by side: one and what it is measured by, or a preset swept over gamma.
 
-from collections.abc import Callable
+Their means over separation and load, ratios at equal separation and load, and mean moduli, each with points
+by Monte Carlo.
+"""
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property, wraps
 from typing import Any, TypeVar
 
 import numpy as np
 
-from analytic import QUANTITIES, Exponential, Hertz, Homogeneous, MeasuredHeights
+from analytic import QUANTITIES, Exponential, Hertz, Homogeneous, MeasuredHeights, mean_modulus
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
+from mcgw.figures.panels import GAMMA, SEPARATION, Panel, Series
+from mcgw.figures.studies import ENOUGH
 from mcgw.figures.style import contact_label, short
 from mcgw.formats.law_text import law_text
 from mcgw.formats.table import evenly
 from mcgw.sampling.asperities import heights
 from mcgw.scene.scene import Scene
+from mcgw.scene.section import SceneError
+from mcgw.statistics.comparison import Points
 
 Key = str | float  # label of a scene or, in a sweep, a gamma
+Estimate = tuple[Array, Array]  # means and their standard errors
 _Result = TypeVar("_Result")
 
 SCENE = "this scene"
+POWERS = {"number": 0.0, "area": 1.0, "load": 1.5}
 _GAMMAS = (2.0, 1.5, 1.2, 1.0, 0.8, 0.5, 0.2)
 _MOST_SURFACES, _MOST_ASPERITIES = 1000, 1_000_000_000
 _MOST_SEPARATIONS, _FINE, _COARSE = 17, 49, 25  # separations of lines: own radii are slow
 _MOST_HEIGHTS = 10_000_000
-
-
-def of_gamma(gamma: float) -> str:
-    """Label a grading."""
-    return f"γ = {gamma:g}"
+_ROUNDING = 1e-14  # of a ratio of sums that are the same: no residual is given in units of it
 
 
 def _once(method: Callable[..., _Result]) -> Callable[..., _Result]:
@@ -49,20 +56,13 @@ def _once(method: Callable[..., _Result]) -> Callable[..., _Result]:
 class Compared:
     """Scenes on the same surfaces, each with its theory and its ensemble when first asked for.
 
-    Parameters
-    ----------
-    asked : Scene
-        As it was given.
-    swept : bool, optional
-        Whether its surfaces get the gradings of the paper. Else it stands as it is beside what it is measured
-        by: itself without interaction, without its grading, and with Hertz's law.
-    most_listed : int, optional
-        Surfaces whose heights are listed one by one.
+    Those of a scene that is swept get the gradings of the paper. Any other stands as it is beside what it is
+    measured by: itself without interaction, without its grading, and with Hertz's law.
     """
 
-    asked: Scene
+    asked: Scene  # as it was given
     swept: bool = False
-    most_listed: int = 100
+    most_listed: int = 100  # surfaces whose heights are listed one by one
     _kept: dict[Any, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @cached_property
@@ -85,8 +85,8 @@ class Compared:
         """Scenes by label, the one that ratios are taken to last; that alone if it is the simplest itself."""
         if self.swept:
             gammas = (gamma for gamma in _GAMMAS if gamma != 1)
-            graded = {of_gamma(g): self.scene.replace(grading=Exponential(g)) for g in gammas}
-            return graded | {of_gamma(1): self.scene}
+            graded = {f"γ = {g:g}": self.scene.replace(grading=Exponential(g)) for g in gammas}
+            return graded | {"γ = 1": self.scene}
         found = {SCENE: self.scene}
         if self.scene.interaction is not None:
             found["independent"] = self.scene.replace(interaction=None)
@@ -101,7 +101,7 @@ class Compared:
         """Titles of panels, and labels of what they show together."""
         if not self.swept:
             return (("", tuple(self.all)),)
-        labels, one = tuple(map(of_gamma, _GAMMAS)), _GAMMAS.index(1)
+        labels, one = tuple(f"γ = {g:g}" for g in _GAMMAS), _GAMMAS.index(1)
         return ("a  stiffer tips", labels[: one + 1]), ("b  softer tips", labels[one:])
 
     @property
@@ -134,7 +134,7 @@ class Compared:
 
     def of(self, key: Key) -> Scene:
         """Return the scene of a label or gamma."""
-        label = key if isinstance(key, str) else of_gamma(key)
+        label = key if isinstance(key, str) else f"γ = {key:g}"
         return self.all[label] if label in self.all else self.scene.replace(grading=Exponential(float(key)))
 
     @_once
@@ -186,3 +186,107 @@ class Compared:
                 f"{'γ' if self.swept else 'lines'}."
             )
         return " ".join([*said, "Lines: theory."] if surfaces else said)
+
+
+def _ratio(above: Sequence[Array], below: Sequence[Array]) -> Estimate:
+    """Take a product of means over the same surfaces over another, with its error by the delta method.
+
+    Of sums of each surface, shape (surfaces, ...). An error of the last digits alone is 0; nan where there is
+    nothing.
+    """
+    signed = [*((1, x) for x in above), *((-1, x) for x in below)]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        value = np.prod([x.mean(axis=0) ** float(sign) for sign, x in signed], axis=0)
+        influence = np.sum([sign * x / x.mean(axis=0) for sign, x in signed], axis=0)
+        relative = influence.std(axis=0, ddof=1) / np.sqrt(len(influence))
+    return value, np.abs(value) * np.where(relative <= _ROUNDING, 0.0, relative)
+
+
+@dataclass(frozen=True)
+class Mean:
+    """A product of means over others, such as area per load."""
+
+    above: tuple[str, ...]  # names of the quantities
+    below: tuple[str, ...] = ()
+    relative: bool = False  # whether it is divided by that of the reference
+    at_load: bool = False  # whether separations are those of the reference, and the load is the same
+    factor: float = 1.0  # what it is multiplied by
+
+    def exact(self, f: Compared, key: Key, h: Array) -> Array:
+        """By theory."""
+        above, below = self._factors(f, key, h, f.theory)
+        return np.asarray(self.factor * np.prod(above, axis=0) / np.prod(below, axis=0))
+
+    def drawn(self, f: Compared, key: Key, h: Array) -> Estimate:
+        """By Monte Carlo."""
+        mean, stderr = _ratio(*self._factors(f, key, h, f.values))
+        return self.factor * mean, self.factor * stderr
+
+    def _factors(self, f: Compared, key: Key, h: Array, of: Any) -> tuple[list[Array], list[Array]]:
+        """Numerator and denominator; `of` takes a label, a quantity and separations."""
+        there = f.at_load_of_reference(key, h) if self.at_load else h
+        above, below = ([of(key, name, there) for name in names] for names in (self.above, self.below))
+        if self.relative:
+            above += [of(f.reference, name, h) for name in self.below]
+            below += [of(f.reference, name, h) for name in self.above]
+        return above, below
+
+
+@dataclass(frozen=True)
+class Modulus:
+    """Mean of E*(s)/E* over the contacts, weighted by one of `POWERS`."""
+
+    weight: Any
+
+    def exact(self, f: Compared, key: Key, h: Array) -> Array:
+        """By theory."""
+        return mean_modulus(h, f.of(key).modulus, heights=f.scene.heights, weight=self.weight)
+
+    def drawn(self, f: Compared, key: Key, h: Array) -> Estimate:
+        """Over the contacts of the listed surfaces."""
+        modulus, power = f.of(key).modulus, POWERS[self.weight]
+        above, below = np.zeros((2, len(f.listed), len(h)))
+        for i, s in enumerate(f.listed):
+            for k, separation in enumerate(h):
+                touching = s[s > separation]
+                e = modulus(touching)
+                weights = (touching - separation) ** power * (e if self.weight == "load" else 1.0)
+                above[i, k], below[i, k] = np.sum(weights * e), np.sum(weights)
+        return _ratio([above], [below])
+
+
+Measure = Mean | Modulus
+
+
+def over_separation(f: Compared, label: str, what: Measure, key: str = "", n_surfaces: int = 0) -> Series:
+    """Return what is measured on a scene, by default that of the label, over the separation.
+
+    Points are where so many surfaces (default: all) have enough contacts for an error; there are none if a
+    modulus is not positive at all separations of what is measured.
+    """
+    key, n, points = key or label, n_surfaces or f.scene.n_surfaces, None
+    known = (f.theory(key, "contacts", f.h) * n >= ENOUGH) & (n > 1)
+    with suppress(SceneError):
+        if known.any():
+            (mean, stderr), exact = what.drawn(f, key, f.h), what.exact(f, key, f.h)
+            points = Points(f.h[known], mean[known], stderr[known], exact[known])
+    return Series(label, f.line, what.exact(f, key, f.line), points)
+
+
+def ratio(
+    f: Compared, title: str, symbol: str, what: Measure, line: Array, gammas: Array, at: Array
+) -> Panel:
+    """Draw a ratio to the reference: of a sweep over gamma, else over the separation for each other scene."""
+    ylabel = rf"${symbol}_\mathrm{{{'hom' if f.swept else 'ref'}}}$"
+    if not f.swept:
+        series = tuple(over_separation(f, label, what) for label in f.others)
+        return Panel(title, SEPARATION, ylabel, series, level=1.0)
+    mean, stderr = np.array([what.drawn(f, float(gamma), at) for gamma in gammas]).transpose(1, 2, 0)
+    curves, truth = (
+        np.array([what.exact(f, float(gamma), at) for gamma in some]).T for some in (line, gammas)
+    )
+    series = tuple(
+        Series(f"d/σ = {h:g}", line, curves[k], Points(gammas, mean[k], stderr[k], truth[k]))
+        for k, h in enumerate(at)
+    )
+    return Panel(title, GAMMA, ylabel, series, level=1.0)

@@ -47,37 +47,31 @@ def _map_panel(
     every = tuple(slice(None, None, max(n // _POINTS, 1)) for n in topography.heights.shape)
     z = topography.heights[every]
     z = np.where(np.isfinite(z) if seen is None else seen[every], z, np.nan)
-    unit, factor = _unit(float(np.nanstd(z)))
-    lateral, times = _unit(max(topography.size))
+    unit, prefix = prefixed(float(np.nanstd(z)))
+    lateral, of_sides = prefixed(max(topography.size))
 
     def paint(axis: Any) -> None:
-        low, high = np.nanpercentile(z, (0.5, 99.5)) * factor
+        low, high = np.nanpercentile(z, (0.5, 99.5)) / unit
         image = axis.imshow(
-            factor * z, vmin=low, vmax=high, origin="lower", interpolation="nearest",
+            z / unit, vmin=low, vmax=high, origin="lower", interpolation="nearest",
             cmap=mpl.colormaps["gray"].with_extremes(bad=MISSING),
-            extent=(0, times * topography.size[0], 0, times * topography.size[1]),
+            extent=(0, topography.size[0] / lateral, 0, topography.size[1] / lateral),
         )  # fmt: skip
         axis.grid(visible=False)
-        axis.figure.colorbar(image, ax=axis, label=f"height ({unit})", shrink=0.8)
+        axis.figure.colorbar(image, ax=axis, label=f"height ({prefix}m)", shrink=0.8)
         more(axis)
 
-    return Panel(title, f"x ({lateral})", f"y ({lateral})", paint=paint)
-
-
-def _unit(length: float) -> tuple[str, float]:
-    """Return a unit in which a length is 1 to 1000, and its number per metre."""
-    size, prefix = prefixed(length)
-    return f"{prefix}m", 1 / size
+    return Panel(title, f"x ({of_sides}m)", f"y ({of_sides}m)", paint=paint)
 
 
 def _summits_panel(fit: Fit, ready: Prepared) -> Panel:
     """Return the map with its summits, some of them if there are many."""
-    used, times = ready.used, _unit(max(ready.used.size))[1]
+    used, (unit, _) = ready.used, prefixed(max(ready.used.size))
     some = slice(None, None, max(fit.summits.size // _MOST_MARKS, 1))
     # the filter took a margin off the map on which they are placed
     margins = ((whole - part) / 2 for whole, part in zip(ready.levelled.size, used.size, strict=True))
     listed = (fit.listed.x, fit.listed.y)
-    x, y = (times * (place[some] - margin) for place, margin in zip(listed, margins, strict=True))
+    x, y = ((place[some] - margin) / unit for place, margin in zip(listed, margins, strict=True))
     size = max(0.4, min(3.0, 90 / np.sqrt(x.size)))
     shown = "" if x.size == fit.summits.size else f", {x.size} shown"
     title = f"b  as analysed: {fit.summits.size} summits{shown}"
@@ -97,15 +91,15 @@ def _moments_panel(ready: Prepared) -> Panel:
         except ValueError:  # the filter leaves nothing of the map
             break
         rows.append((m.m0, m.m2, m.m4))
-    unit, times = _unit(float(cutoffs[len(rows) // 2]))
+    unit, prefix = prefixed(float(cutoffs[len(rows) // 2]))
 
     def paint(axis: Any) -> None:
         for values, name in zip(np.array(rows).T, ("$m_0$", "$m_2$", "$m_4$"), strict=True):
             over = values / values[0]
-            axis.plot(times * cutoffs[: len(rows)], over, **look(name), ms=4, mfc="white", label=name)
+            axis.plot(cutoffs[: len(rows)] / unit, over, **look(name), ms=4, mfc="white", label=name)
 
     label, title = "over those at the first cutoff", "c  moments against cutoff"
-    return Panel(title, f"cutoff ({unit})", label, scales=("linear", "log"), paint=paint)
+    return Panel(title, f"cutoff ({prefix}m)", label, scales=("linear", "log"), paint=paint)
 
 
 def heights_panel(fit: Fit) -> Panel:

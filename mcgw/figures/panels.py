@@ -56,32 +56,16 @@ def words(text: str, x: float = 0.5, y: float = 0.5, **look: Any) -> Painter:
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes.
-
-    Parameters
-    ----------
-    title, xlabel, ylabel : str
-        Its texts.
-    series : tuple of Series, optional
-        Lines of theory and points.
-    scales : (str, str), optional
-        Of x and y.
-    level : float, optional
-        A value of y worth a line of its own.
-    paint : callable, optional
-        Draws what else it shows, and sets other properties, on matplotlib's axes.
-    wide : bool, optional
-        Whether it takes all columns.
-    """
+    """One pair of axes."""
 
     title: str
     xlabel: str
     ylabel: str
-    series: tuple[Series, ...] = ()
-    scales: tuple[str, str] = ("linear", "linear")
-    level: float | None = None
-    paint: Painter = lambda _: None
-    wide: bool = False
+    series: tuple[Series, ...] = ()  # lines of theory and points
+    scales: tuple[str, str] = ("linear", "linear")  # of x and y
+    level: float | None = None  # a value of y worth a line of its own
+    paint: Painter = lambda _: None  # draws what else it shows, and sets other properties, on its axes
+    wide: bool = False  # whether it takes all columns
 
 
 @dataclass(frozen=True)

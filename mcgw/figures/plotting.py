@@ -88,7 +88,8 @@ def _(result: Ensemble, *, quantity: str) -> Panel:
 
 
 @panel_of.register
-def _(result: Comparison, *, quantity: str) -> Panel:
+def _(result: Comparison, *, quantity: str | None = None) -> Panel:
+    quantity = quantity or next(iter(result.curves))
     title = f"Monte Carlo and theory {result.verdict.word}: p = {result.verdict.p:.3g} over all means"
     panel = quantity_panel(result, quantity)
     return replace(panel, title=title, ylabel=result.ensemble.scene.quantity(quantity).title)
@@ -96,6 +97,13 @@ def _(result: Comparison, *, quantity: str) -> Panel:
 
 panel_of.register(SweepComparison, lambda result: residuals_panel("all points", result.residuals))
 panel_of.register(Tradeoff, errors_panel)
+panel_of.register(Convergence, lambda result: replace(
+    checks_panel(result), title=f"Statistical convergence {result.word}: p = {result.p:.3g}",
+    xlabel="probability by chance; grey: fails",
+))  # fmt: skip
+panel_of.register(Fit, lambda result: replace(
+    heights_panel(result), title=f"{result.summits.size} summits, sigma = {result.summits.std():.4g} m",
+))  # fmt: skip
 
 
 @panel_of.register
@@ -150,18 +158,6 @@ def _(result: Solution) -> Panel:
 
     title = f"at {result.given} = {result.amount:.6g} {quantity_of(result.given).unit}"
     return Panel(title, SEPARATION, "surfaces", paint=paint)
-
-
-@panel_of.register
-def _(result: Convergence) -> Panel:
-    title = f"Statistical convergence {result.word}: p = {result.p:.3g}"
-    return replace(checks_panel(result), title=title, xlabel="probability by chance; grey: fails")
-
-
-@panel_of.register
-def _(result: Fit) -> Panel:
-    title = f"{result.summits.size} summits, sigma = {result.summits.std():.4g} m"
-    return replace(heights_panel(result), title=title)
 
 
 @panel_of.register

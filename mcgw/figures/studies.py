@@ -1,18 +1,20 @@
-"""Figures of studies: Monte Carlo on theory, the convergence test, and error against time."""
+"""Figures of studies: Monte Carlo on theory, scatter, the convergence test, and error against time."""
 
 import textwrap
-from itertools import groupby
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.ticker import EngFormatter, NullLocator
 
 from analytic.arrays import Array
+from mcgw.ensemble.ensemble import Ensemble
 from mcgw.figures import style
 from mcgw.figures.panels import SEPARATION, FigureData, Panel, Series, words
 from mcgw.figures.style import contact_label, look, shown_title
 from mcgw.machine.terminal import one_line
-from mcgw.statistics.comparison import Comparison, SweepComparison
+from mcgw.scene.scene import Scene
+from mcgw.statistics.comparison import Comparison, Points, SweepComparison
 from mcgw.statistics.verdict import FALSE_ALARM
 
 if TYPE_CHECKING:  # these import the samplers
@@ -21,6 +23,7 @@ if TYPE_CHECKING:  # these import the samplers
     from mcgw.statistics.tradeoff import Tradeoff
     from mcgw.statistics.ways import Way
 
+ENOUGH = 20  # contacts in the ensemble; with fewer a mean is far from Gaussian
 _BIN = 0.5  # standard errors
 _RESIDUAL = "residual (standard errors)"
 _FLOOR, _LEAST = 1e-14, 1e-12  # errors and probabilities that are drawn
@@ -28,11 +31,8 @@ _TWO = 1.96  # standard errors that 95 of 100 keep
 _TIME, _BOUND = "CPU time (s)", "error (95 % bound)"
 _RULES: dict[str, dict[str, Any]] = {
     "theory": {"color": style.THEORY, "marker": "*"},
-    "formula": {"color": style.THEORY, "marker": "*"},
     "exact law": {"color": style.HOMOGENEOUS, "marker": "P"},
     "solve": {"color": look("tail")["color"], "marker": "o"},
-    "surfaces": {"color": look("tail")["color"], "marker": "s"},
-    "boundary elements": {"color": style.HOMOGENEOUS, "marker": "D"},
 }
 
 
@@ -66,6 +66,40 @@ def quantity_panel(comparison: Comparison, name: str) -> Panel:
     pulls = bool(np.any(points.theory < 0) or np.any(points.mean < 0))  # it does not fit a log axis
     scales, level = (("linear", "linear"), 0.0) if pulls else (("linear", "log"), None)
     return Panel(comparison.ensemble.scene.quantity(name).title, SEPARATION, "", (series,), scales, level)
+
+
+def spread_panel(title: str, ensemble: Ensemble, line: Array, names: Sequence[str] = ()) -> Panel:
+    """Show how far surfaces spread, exactly and of those that were drawn, by quantity: all, or some."""
+    scene = ensemble.scene
+    series = tuple(spread(name, scene, name, line, ensemble) for name in names or scene.quantities)
+    return Panel(title, SEPARATION, "std / mean", series, ("linear", "log"))
+
+
+def spread(
+    label: str, scene: Scene, name: str, line: Array, drawn: Ensemble | None, fewest: float = ENOUGH
+) -> Series:
+    """Return the exact standard deviation over the mean of a quantity, and that of what was drawn.
+
+    Points have standard errors by the exact law of one surface, to first order: half of std's, that of the
+    mean, and both together. There are none at separations with fewer contacts in the ensemble.
+    """
+
+    def over_mean(law: Any) -> Array:
+        with np.errstate(divide="ignore", invalid="ignore"):  # nan where nothing touches
+            return np.asarray(np.sqrt(law.variance) / np.abs(law.mean))
+
+    exact = over_mean(scene.theory.cumulants(name, line))
+    if drawn is None:
+        return Series(label, line, exact)
+    h = drawn.separations
+    known = (scene.theory.mean("contacts", h) * drawn.n_surfaces >= fewest) & (drawn.std(name) > 0)
+    if not known.any():
+        return Series(label, line, exact)
+    law = scene.theory.cumulants(name, h[known])
+    there = over_mean(law)
+    relative = np.sqrt((law.excess_kurtosis + 2) / 4 + there**2 - law.skewness * there)
+    seen = drawn.std(name)[known] / np.abs(drawn.mean(name)[known])
+    return Series(label, line, exact, Points(h[known], seen, there * relative / drawn.n_surfaces**0.5, there))
 
 
 def residuals_panel(title: str, z: Array) -> Panel:
@@ -154,19 +188,19 @@ def checks_panel(found: "Convergence") -> Panel:
 
 
 def tradeoff_figure(found: "Tradeoff") -> FigureData:
-    """Error against time, a panel for each answer, and the ladder of models below."""
+    """Error against time, a panel for each answer."""
     from mcgw.statistics.ways import WANTS
 
-    title = f"{shown_title(found.scene, 'Speed and accuracy')}\n{found.sentence}"
+    title = f"{shown_title(found.scene, 'Speed and accuracy')}\n{found.worth}"
     n, ways = found.scene.n_surfaces, found.ways
     times = [p.seconds for p in found.points]
     times += [way.seconds(n) for way in ways if way.want == "values" or not way.draws]
     within = min(times) / 2, 2 * max(times)
-    panels = (*(errors_panel(found, want, xlim=within) for want in WANTS), _ladder_panel(found))
-    return FigureData(title, found.worth, panels)
+    panels = tuple(errors_panel(found, want, xlim=within) for want in WANTS)
+    return FigureData(title, "", panels)
 
 
-def errors_panel(found: "Tradeoff", want: str, **limits: Any) -> Panel:
+def errors_panel(found: "Tradeoff", want: str = "mean", **limits: Any) -> Panel:
     """95 % bounds against time: measured points, lines of the expected slope, and ways without draws."""
     kept = [way for way in found.ways if way.want == want and way.measured]
     title = found.words(want) + f" ({found.scene.n_surfaces})" * (want == "values")
@@ -178,6 +212,8 @@ def errors_panel(found: "Tradeoff", want: str, **limits: Any) -> Panel:
     def paint(axis: Any) -> None:
         for way in kept:
             _draw_way(axis, way, found)
+        if want == "conductance" and not np.isnan(found.model):
+            axis.axhline(found.model, color=style.LEVEL, label="error of the model")
         axis.set(ylim=(_FLOOR / 3, 3), **limits)
 
     return Panel(title, _TIME, _BOUND, scales=("log", "log"), paint=paint)
@@ -197,28 +233,3 @@ def _draw_way(axis: Any, way: "Way", found: "Tradeoff") -> None:
         axis.errorbar(time, _TWO * error, _TWO**2 * stderr, ls="", ms=4, label=way.name, **own)
     if not way.draws:
         axis.axhline(floor, color=own["color"], lw=0.8, ls=":")
-
-
-def _ladder_panel(found: "Tradeoff") -> Panel:
-    """Whole errors of the conductance at a load against time, model by model; their parts as thin lines."""
-    model = found.ladder[0].model
-    known = not np.isnan(model)
-
-    def paint(axis: Any) -> None:
-        if known:
-            axis.axhline(model, color=style.LEVEL, lw=1, label="error of the model")
-        for name, group in groupby(found.ladder, lambda rung: rung.name):
-            rungs, own = [*group], _RULES[name]
-            time, whole = [r.seconds for r in rungs], [r.whole if known else r.drawn for r in rungs]
-            axis.plot(time, whole, **own, ms=5, ls="-" * (len(rungs) > 1), label=name)
-            if len(rungs) == 1:
-                continue
-            if known:
-                axis.plot(time, [r.drawn for r in rungs], color=own["color"], lw=0.8, ls=":")
-            for r, *at in zip(rungs, time, whole, strict=True):
-                text = f"{r.n_surfaces:g}"
-                axis.annotate(text, at, (0, 5), textcoords="offset points", fontsize=7, ha="center")
-
-    title = "conductance at its load, by numbers of surfaces or maps; dotted: without the model"
-    whole_error = "whole error (95 % bound)"
-    return Panel(title, _TIME, whole_error, scales=("log", "log"), paint=paint, wide=True)

@@ -69,33 +69,28 @@ def opened(path: Path | str) -> h5py.File:
 
 def _check(file: h5py.File, size: int) -> None:
     """Refuse an open file of a size that leads out of itself, or declares what its bytes cannot hold."""
-    left, seen = max(EXPANSION * size, ENOUGH), 0
-
-    def look(name: bytes, link: Any) -> None:
-        """Refuse what a link leads to; soft ones lead to what hard ones reach, in this file."""
-        nonlocal left, seen
-        path, seen = name.decode(errors="replace"), seen + 1
-        if seen > MOST_OBJECTS:
-            raise StoreError(f"more than {MOST_OBJECTS} groups and datasets")
-        if path.count("/") > DEEPEST:
-            raise StoreError(f"groups are nested more than {DEEPEST} deep")
-        if link.type not in (h5py.h5l.TYPE_HARD, h5py.h5l.TYPE_SOFT):
-            raise StoreError(f"{path[:80]}: a link to another file")
-        item = h5py.h5o.open(file.id, name) if link.type == h5py.h5l.TYPE_HARD else None
-        if isinstance(item, h5py.h5d.DatasetID):
-            left -= _declared(path[:80], item)
-            if left < 0:
-                raise StoreError(f"{path[:80]}: more bytes declared than a file of {size} bytes holds")
-
-    def refused(name: bytes, link: Any) -> Exception | None:
-        try:  # h5py loses what a visitor raises
-            look(name, link)
-        except Exception as error:
-            return error
-        return None
-
-    if (error := file.id.links.visit(refused, info=True)) is not None:
-        raise error
+    left, seen, known = max(EXPANSION * size, ENOUGH), 0, {file["/"], None}
+    groups = [("", file["/"])]
+    for above, group in groups:  # those in it follow; soft links lead to what hard ones reach, in this file
+        for name in group:
+            path, seen = f"{above}{name}", seen + 1
+            if seen > MOST_OBJECTS:
+                raise StoreError(f"more than {MOST_OBJECTS} groups and datasets")
+            if path.count("/") > DEEPEST:
+                raise StoreError(f"groups are nested more than {DEEPEST} deep")
+            link = group.get(name, getlink=True)
+            if not isinstance(link, h5py.HardLink | h5py.SoftLink):
+                raise StoreError(f"{path[:80]}: a link to another file")
+            item = group[name] if isinstance(link, h5py.HardLink) else None
+            if item in known:
+                continue
+            known.add(item)
+            if isinstance(item, h5py.Group):
+                groups.append((f"{path}/", item))
+            elif isinstance(item, h5py.Dataset):
+                left -= _declared(path[:80], item.id)
+                if left < 0:
+                    raise StoreError(f"{path[:80]}: more bytes declared than a file of {size} bytes holds")
 
 
 def _declared(name: str, item: Any) -> int:

@@ -14,7 +14,7 @@ import numpy as np
 from analytic.arrays import Ints
 from mcgw.errors import extra
 from mcgw.formats.files import whole_file
-from mcgw.machine.terminal import brief, listed, one_line
+from mcgw.machine.terminal import brief, listed, one_line, plotted
 
 SEPARATION = "d/sigma"  # over a column of separations
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -212,6 +212,27 @@ class Shown:
 
     def _repr_html_(self) -> str:
         return self.sheet()._repr_html_()
+
+
+class Drawn(Shown):
+    """Draws itself, too."""
+
+    def plot(self, *given: Any, ax: Any = None, **options: Any) -> Any:
+        """Draw it; returns the axes, with labels and a legend.
+
+        Parameters
+        ----------
+        *given : str or matplotlib Axes, optional
+            Of what has several quantities the name of one, default: the first; and `ax`, in either order.
+        ax : matplotlib Axes, optional
+            Axes to draw on; default: new ones.
+        **options
+            ``quantity``, as before; ``want`` of error against time: "mean", "std", "quantile",
+            "distribution", "conductance" or "values".
+        """
+        for each in given:
+            options |= {"quantity": each} if isinstance(each, str) else {"ax": each}
+        return plotted(self, options.pop("ax", ax), **options)
 
 
 def stacked(tables: Mapping[str, Table], key: str, words: str = "") -> Table:

@@ -16,14 +16,14 @@ from mcgw.ensemble.ensemble import Ensemble, how_many
 from mcgw.ensemble.intervals import laws_are_quick
 from mcgw.ensemble.solution import solutions
 from mcgw.ensemble.solved import Solution
-from mcgw.figures.panels import SEPARATION, FigureData, Panel, Series, draw
-from mcgw.figures.ratios import spread
-from mcgw.figures.studies import quantity_panel
-from mcgw.figures.style import SEEN, STYLE, grading_label
+from mcgw.figures.panels import FigureData, Panel, Series, draw
+from mcgw.figures.studies import quantity_panel, spread_panel
+from mcgw.figures.style import SEEN, STYLE, short
+from mcgw.formats.law_text import law_text
 from mcgw.formats.table import Column, Table, evenly, typeset
 from mcgw.machine.progress import told
 from mcgw.machine.terminal import one_line, plain_text
-from mcgw.reports.solved_loads import answer_table, by_load
+from mcgw.reports.text import answer_table, by_load
 from mcgw.scene.cautions import cautions, other_laws
 from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import compare
@@ -66,13 +66,16 @@ def report_html(
         tell(2, 3)
         panels = {quantity_of(x).long_name: quantity_panel(comparison, x) for x in comparison.curves}
         if ensemble.n_surfaces > 1:
-            panels["std over mean against separation"] = spread_panel(ensemble)
+            line = np.sort(ensemble.separations)
+            panels["std over mean against separation"] = spread_panel("Spread over surfaces", ensemble, line)
         figures = {label: svg_of(panel, label) for label, panel in panels.items()}
         tell(3, 3)
     text = _LIST.sub(lambda found: f"[{' '.join(found[1].split()).rstrip(',')}]", attributes["scene"])
     return page.get_template("report.html.j2").render(
         title=one_line(scene.title) or "Ensemble of rough surfaces",
-        words=_opening_words(ensemble),
+        ensemble=ensemble,
+        grading=short(law_text(scene.grading)),
+        shown=how_many(ensemble),
         comparison=comparison,
         at_pressure=at_pressure,
         by_pressure=by_load(scene, solved) if solved else None,
@@ -86,19 +89,6 @@ def report_html(
         elastic_law=scene.law.elastic,
         provenance=[(key, str(({"seed": scene.seed} | attributes)[key])) for key in _PROVENANCE],
         scene=plain_text(text),
-    )
-
-
-def _opening_words(ensemble: Ensemble) -> str:
-    """Describe what was drawn, in two sentences."""
-    scene, shown = ensemble.scene, how_many(ensemble)
-    count = "" if scene.count == "fixed" else " on average (a Poisson number)"
-    separations = f"{len(scene.separations)} separation{'s' * (len(scene.separations) > 1)}"
-    return (
-        f"{ensemble.n_surfaces} rough surfaces of {scene.n_asperities:g} asperities{count}, "
-        f"{grading_label(scene.grading)}, each pressed on a plane at {separations} from d/σ = "
-        f"{min(scene.separations):g} to {max(scene.separations):g}."
-        + (f" Tables and figures are {shown}." if shown else "")
     )
 
 
@@ -148,9 +138,7 @@ def solved_pressures(scene: Scene, pressures: Sequence[float] | None = None) -> 
 def round_pressures(low: float, high: float, most: int) -> list[float]:
     """At most so many pressures 1, 2 and 5 times a power of ten between two; these if there is none."""
     powers = range(int(np.floor(np.log10(low))), int(np.ceil(np.log10(high))) + 1)
-    found = [
-        float(f"{x:g}e{k}") for k in powers for x in (1.0, 2.0, 5.0) if low <= float(f"{x:g}e{k}") <= high
-    ]
+    found = [x for k in powers for each in (1, 2, 5) if low <= (x := float(f"{each}e{k}")) <= high]
     return [found[k] for k in evenly(len(found), most)] if found else [low, high]
 
 
@@ -166,13 +154,6 @@ def svg_of(panel: Panel, label: str) -> str:
     mark = re.sub(r"\W+", "-", label)
     rest = re.sub(r'(id="|href="#|url\(#)', rf"\g<1>{mark}-", rest)
     return f"{head}>{rest}"
-
-
-def spread_panel(ensemble: Ensemble) -> Panel:
-    """Show how far surfaces spread."""
-    scene, line = ensemble.scene, np.sort(ensemble.separations)
-    series = tuple(spread(name, scene, name, line, ensemble) for name in scene.quantities)
-    return Panel("Spread over surfaces", SEPARATION, "std / mean", series, ("linear", "log"))
 
 
 def pressure_panels(solved: Sequence[Solution]) -> Iterator[tuple[str, Panel]]:

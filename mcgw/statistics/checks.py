@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.special import polygamma, psi
 from scipy.stats import binom, chi2, kstest, norm, t as student
 
-from analytic import Quantity, quantity_of
+from analytic import quantity_of
 from analytic.arrays import Array
 from mcgw.scene.scene import Scene
 from mcgw.statistics.verdict import Check, bounded_theory
@@ -25,26 +25,14 @@ _INDEPENDENT = 1e-6  # least variance of a combination: below it columns are nea
 
 @dataclass(frozen=True)
 class PrincipalComponents:
-    """Axes and the exact distribution along them.
+    """Axes and the exact distribution along them."""
 
-    Parameters
-    ----------
-    columns : tuple of (str, int)
-        Quantity and number of the separation of what is combined.
-    mean, std : ndarray
-        Exact, of each column.
-    axes : ndarray
-        Shape (columns, axes).
-    skewness, kurtosis : ndarray
-        Exact third and fourth cumulant along each axis.
-    """
-
-    columns: tuple[tuple[str, int], ...]
-    mean: Array
+    columns: tuple[tuple[str, int], ...]  # quantity and number of the separation of what is combined
+    mean: Array  # exact, of each column
     std: Array
-    axes: Array
-    skewness: Array
-    kurtosis: Array
+    axes: Array  # shape (columns, axes)
+    skewness: Array  # exact third cumulant along each axis
+    kurtosis: Array  # exact fourth cumulant along each axis
 
     @classmethod
     def of(cls, scene: Scene, quantities: tuple[str, ...] = ()) -> "PrincipalComponents":
@@ -56,7 +44,7 @@ class PrincipalComponents:
         n, h, quantities = scene.n_asperities, np.array(scene.separations), quantities or scene.quantities
         parts = bounded_theory(scene, scene.n_surfaces).fluctuations(quantities, h)
         variance = parts.moment(2)
-        share = np.concatenate([_share(scene, quantity_of(name), h) for name in quantities])
+        share = np.concatenate([scene.theory.mean(_adding(scene, name), h) / n for name in quantities])
         touching = n * np.minimum(share, 1 - share + (scene.count == "poisson"))
         chosen = np.flatnonzero((touching > _TOUCHING) & (variance > 0))
         unit = np.sqrt(variance[chosen])
@@ -83,35 +71,24 @@ class PrincipalComponents:
         return np.asarray((values - self.mean) / self.std @ self.axes)
 
 
-def _share(scene: Scene, q: Quantity, h: Array) -> Array:
-    """Share of the asperities that add to a quantity."""
+def _adding(scene: Scene, name: str) -> str:
+    """Name the count of the asperities that add to a quantity."""
+    q = quantity_of(name)
     if q.base == "yielded":
-        return scene.theory.mean("yielded", h) / scene.n_asperities
-    if q.unloading and not scene.law.elastic:
-        return scene.theory.mean("contacts_unloading", h) / scene.n_asperities
-    return scene.heights.sf(h)
+        return "yielded"
+    return "contacts_unloading" if q.unloading and not scene.law.elastic else "contacts"
 
 
 @dataclass(frozen=True)
 class Slope:
-    """A power law of the error.
+    """A power law of the error."""
 
-    Parameters
-    ----------
-    against : str
-        What is varied.
-    sizes, errors, stderr : ndarray
-        Sizes; relative errors there, and their relative uncertainties.
-    value, uncertainty : float
-        Exponent and its standard error.
-    """
-
-    against: str
+    against: str  # what is varied
     sizes: Array
-    errors: Array
-    stderr: Array
-    value: float
-    uncertainty: float
+    errors: Array  # relative, at each size
+    stderr: Array  # relative uncertainty of each
+    value: float  # exponent
+    uncertainty: float  # its standard error
 
     @property
     def check(self) -> Check:

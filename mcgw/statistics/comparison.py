@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
@@ -10,9 +10,8 @@ from analytic.arrays import Array, Marks
 from mcgw.ensemble.ensemble import Ensemble, how_many, shown
 from mcgw.ensemble.intervals import interval_columns
 from mcgw.ensemble.results import heading
-from mcgw.formats.table import SEPARATION, Column, Shown, Table, joined, stacked
+from mcgw.formats.table import SEPARATION, Column, Drawn, Table, joined, stacked
 from mcgw.machine.progress import Progress, told
-from mcgw.machine.terminal import plotted, quantity_and_axes
 from mcgw.scene.kinds import check_object
 from mcgw.statistics.verdict import Check, Tested, laws_of_values, tested, together, verdict
 from mcgw.sweeps.axes import label
@@ -67,7 +66,7 @@ class Points:
 
 
 @dataclass(frozen=True, repr=False)
-class Comparison(Shown):
+class Comparison(Drawn):
     """A comparison of an ensemble with theory.
 
     Parameters
@@ -87,27 +86,11 @@ class Comparison(Shown):
     verdict: Check
     of_many: str = ""
 
-    def plot(self, quantity: str | None = None, ax: Any = None) -> Any:
-        """Draw the theory of a quantity with the Monte-Carlo means on it.
-
-        Parameters
-        ----------
-        quantity : str, optional
-            One of the curves; default: the first.
-        ax : matplotlib Axes, optional
-            Axes to draw on, also as the first argument; default: new ones.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            With labels and a legend.
-        """
-        quantity, ax = quantity_and_axes(quantity, ax)
-        return plotted(self, ax, quantity=quantity or next(iter(self.curves)))
-
     def sheet(self) -> Table:
         """Return the verdict, and each quantity at the separation where it is farthest from theory."""
-        farthest = {name: _farthest(table, 1) for name, table in self.tables().items()}
+        farthest = {}
+        for name, table in self.tables().items():  # of those that read alike the first, despite rounding
+            farthest[name] = table.at([int(np.abs(self.curves[name].residual).round(2).argmax())])
         v = self.verdict
         facts = [
             ("all means", f"{v.seen}, p = {v.p:.3g}"),
@@ -137,19 +120,9 @@ class Comparison(Shown):
         """Return a row for each quantity and separation shown."""
         return stacked(self.tables(), "quantity")
 
-    def worst(self, rows: int) -> Table:
-        """Return the means farthest from theory, over all quantities."""
-        return _farthest(self.table().under("farthest from theory, in standard errors"), rows)
-
-
-def _farthest(table: Table, rows: int) -> Table:
-    """Rows of the largest residuals; of those that read alike the first, whatever their rounding."""
-    far = np.abs(table.only("residual").columns[0].values).round(2)
-    return table.at(np.argsort(-far, kind="stable")[:rows].tolist())
-
 
 @dataclass(frozen=True, repr=False)
-class SweepComparison(Shown):
+class SweepComparison(Drawn):
     """A comparison of a sweep with theory.
 
     Parameters
@@ -172,16 +145,12 @@ class SweepComparison(Shown):
     @cached_property
     def worst(self) -> list[Tested]:
         """All points, the least likely by chance first; of equally likely ones that with the worst mean."""
-        return sorted(self.points, key=lambda one: (one.verdict.p, -abs(one.residual[one.worst])))
+        return sorted(self.points, key=lambda one: (one.verdict.p, -abs(one.residual.flat[one.row])))
 
     @property
     def residuals(self) -> Array:
         """Residuals of all points, quantities and separations that count: standard normal, but dependent."""
         return np.concatenate([one.residual[one.counts] for one in self.points])
-
-    def plot(self, ax: Any = None) -> Any:
-        """Draw how the residuals of all points are distributed; returns the axes."""
-        return plotted(self, ax)
 
     def sheet(self, most: int = 7) -> Table:
         """Return the verdict, and the points that are farthest from theory."""

@@ -1,8 +1,7 @@
 """The statistical convergence test, for this simulator and for a user's sampler or contact law."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import lru_cache
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,14 +10,12 @@ from scipy.stats import binom, poisson
 
 from analytic import quantity_of
 from analytic.arrays import Array
-from mcgw.ensemble.drawing import block_size, drawn_blocks
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Results, joined
-from mcgw.formats.table import Column, Shown, Table, evenly
+from mcgw.ensemble.simulation import simulate
+from mcgw.formats.table import Column, Drawn, Table, evenly
 from mcgw.machine.progress import Progress, told
-from mcgw.machine.terminal import brief, plotted
-from mcgw.sampling.block import Sampler
-from mcgw.sampling.samplers import sampler_of
+from mcgw.machine.terminal import brief
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene
 from mcgw.statistics.checks import (
@@ -43,7 +40,7 @@ SEEDS = 24
 
 
 @dataclass(frozen=True, repr=False)
-class Convergence(Shown):
+class Convergence(Drawn):
     """Result of the convergence test.
 
     Parameters
@@ -78,24 +75,16 @@ class Convergence(Shown):
         """Whether it passed."""
         return "passed" if self.passed else "FAILED"
 
-    def plot(self, ax: Any = None) -> Any:
-        """Draw the probability of every check; returns the axes."""
-        return plotted(self, ax)
-
     def sheet(self) -> Table:
         """Return the verdict and its worst checks."""
-        first = sorted(self.checks, key=lambda check: check.p)[:8]  # checks displayed
+        first = np.argsort([check.p for check in self.checks], kind="stable")[:8]  # checks displayed
         facts = [("p", f"{self.p:.3g} over all {len(self.checks)} checks")]
-        return _table(first, "worst").under(f"Statistical convergence {self.word}", facts)
+        return self.table().at(first.tolist()).under(f"Statistical convergence {self.word}", facts)
 
     def table(self) -> Table:
         """Every check."""
-        return _table(self.checks, "check")
-
-
-def _table(checks: Sequence[Check], words: str) -> Table:
-    names, p, seen = zip(*((check.name, check.p, brief(check.seen)) for check in checks), strict=True)
-    return Table((Column("check", names, words), Column("p", p, form=".3g"), Column("seen", seen)))
+        names, p, seen = zip(*((each.name, each.p, brief(each.seen)) for each in self.checks), strict=True)
+        return Table((Column("check", names), Column("p", p, form=".3g"), Column("seen", seen)))
 
 
 def converge(
@@ -181,15 +170,8 @@ def converge(
 
 
 def _own(scene: Scene) -> Sums:
-    sampler = replace(_prepared(scene.replace(seed=0)), scene=scene)
-    blocks = drawn_blocks(sampler, 0, scene.n_surfaces, block_size(scene, sampler))
-    return joined(list(blocks))
-
-
-@lru_cache(maxsize=1)
-def _prepared(scene: Scene) -> Sampler:
-    """Return the sampler for all seeds of a scene: preparing takes longer than drawing."""
-    return sampler_of(scene)
+    drawn = simulate(scene)
+    return {name: drawn.values(name) for name in scene.quantities}
 
 
 def _contacts(scene: Scene, sums: Sums) -> list[Check]:

@@ -76,44 +76,21 @@ def together(checks: Sequence[Check]) -> Check:
 
 @dataclass(frozen=True)
 class Tested:
-    """Data behind a verdict: means at some separations, arrays of shape (quantities, separations).
-
-    Parameters
-    ----------
-    quantities : tuple of str
-        Their names.
-    separations : ndarray
-        In order.
-    mean, theory : ndarray
-        Monte-Carlo and exact means, in SI units.
-    residual : ndarray
-        Their difference over the exact standard error; 0 where nothing fluctuates.
-    counts : ndarray of bool
-        Whether the mean is Gaussian enough for that to be read as a normal number.
-    verdict : Check
-        Of all of them.
-    number : int
-        Number of the point of a sweep, the last axis fastest.
-    """
+    """Data behind a verdict: means at some separations, arrays of shape (quantities, separations)."""
 
     quantities: tuple[str, ...]
-    separations: Array
-    mean: Array
-    theory: Array
-    residual: Array
-    counts: Marks
-    verdict: Check
-    number: int = 0
+    separations: Array  # in order
+    mean: Array  # by Monte Carlo, in SI units
+    theory: Array  # exactly
+    residual: Array  # their difference over the exact standard error; 0 where nothing fluctuates
+    counts: Marks  # whether the mean is Gaussian enough for that to be read as a normal number
+    verdict: Check  # of all of them
+    number: int = 0  # of the point of a sweep, the last axis fastest
 
     @property
     def row(self) -> int:
         """Number in `table` of the mean farthest off, among those that count."""
         return int(np.argmax(np.where(self.counts, np.abs(self.residual), -1.0)))
-
-    @property
-    def worst(self) -> tuple[int, int]:
-        """The same as indices (quantity, separation)."""
-        return divmod(self.row, len(self.separations))
 
     def table(self, scene: Scene) -> Table:
         """Return a row for each quantity and separation."""

@@ -29,7 +29,7 @@ LINES = {
     "run": ["run plain.toml -o new/r.h5", "run y.toml -o y.h5", "run y.toml -o y.h5 -v"],
     "sweep": ["sweep plain.toml --over grading.gamma=1.1,1.2 -v -o s.h5", "compare s.h5 -o s.png"],
     "show": ["show e.h5 --verify", "show y.h5", "show y.toml --plan", "show scene.toml --plan -v"],
-    "compare": ["compare e.h5 -o c.png --csv new/c.csv -v", "compare y.h5 -o y.png --table"],
+    "compare": ["compare e.h5 -o c.png --csv new/c.csv -v", "compare y.h5 -o y.png"],
     "converge": ["converge plain.toml -o new"],
     "merge": ["merge e.h5"],
     "solve": ["solve plain.toml --load 1N --csv new/v.csv", "solve y.toml --pressure 2MPa -v"],

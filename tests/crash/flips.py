@@ -112,8 +112,10 @@ def main(folder, flips):
         path.write_bytes(data)
         counted[kind]["flips"] += 1
         what = found(opened, held.get(opened, 0))
-        if what == "seen" or (what == "harmless" and opened == begun):  # elsewhere the places count
-            counted[kind][what] += 1
+        if what == "harmless" and opened == begun:  # elsewhere the places are of what counts
+            counted[kind]["harmless"] += 1
+        elif what == "seen":
+            counted[kind]["seen"] += 1
         else:
             counted[kind]["unseen"].append(at)
         path.write_bytes(good)

@@ -12,9 +12,8 @@ from oracles.inside import pressures_of
 import mcgw
 from analytic.at_load import Moments
 from mcgw.cli import main
-from mcgw.exports.curves import KINDS, quantile_name, surfaces_for
-from mcgw.exports.programs import PROGRAMS, UNITS, Sheet
-from mcgw.exports.writing import SCHEMA
+from mcgw.exports.programs import KINDS, PROGRAMS, UNITS, Sheet
+from mcgw.exports.writing import SCHEMA, quantile_name, surfaces_for
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
 
@@ -235,12 +234,16 @@ def test_what_has_no_table_is_told(scene, ensemble, tmp_path):
         (3.0, {}, "^float: give a scene, an ensemble, or the file of an ensemble$"),
         (alone, {"to": "json"}, "two separations or more"),
         (apart, {"to": "json"}, "two separations or more"),
-        (scene, {"table": "gap-pressure"}, r"^table = 'gap-pressure': choose one of pressure-gap, "),
+        (
+            scene,
+            {"table": "gap-pressure"},
+            r"^table = 'gap-pressure': did you mean pressure-gap\? choose",
+        ),
         (scene, {"to": "calculix", "table": "conductance-gap"}, "calculix does not support it; choose"),
         (scene, {"to": "ansys"}, r"^to = 'ansys': choose one of calculix, abaqus, moose, comsol, json$"),
         (scene, {"to": "calculix", "points": 300}, "^points = 300: calculix reads at most 200 lines; give"),
         (scene, {"pressures": [2.0, 1.0]}, r"^pressures = \[2\.0, 1\.0\]: give two or more increasing numb"),
-        (scene, {"pressures": ["1 N", "2 N"]}, "^pressures = '1 N': give a finite number > 0 in Pa"),
+        (scene, {"pressures": ["1 N", "2 N"]}, r"^pressures = \['1 N', '2 N'\]: give two .* Pa; value 1"),
     ):
         with pytest.raises(ValueError, match=told) as caught:
             mcgw.export(what, tmp_path / "t.txt", **({"to": "comsol"} | given))

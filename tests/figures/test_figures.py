@@ -9,7 +9,7 @@ import pytest
 from conftest import SURFACE
 from oracles import inside
 from oracles.crowding import crowded
-from oracles.inside import CATALOGUE, Compared, FigureData, draw, figures_of, ratio_of_sums
+from oracles.inside import CATALOGUE, Compared, FigureData, _ratio as ratio_of_sums, draw, figures_of
 from oracles.scenes import scene_by
 from oracles.told import mark
 from scipy.integrate import quad

@@ -42,12 +42,21 @@ def limited(action):
 def mutated_file(data, dice):
     data = bytearray(data)
     for _ in range(dice.choice([1, 1, 2, 8])):
-        at, other, n = dice.randrange(len(data)), dice.randrange(len(data)), dice.choice([1, 2, 4, 8, 64])
-        flipped = bytes([data[at] ^ 1 << dice.randrange(8), *data[at + 1 : at + n]])
-        data[at : at + n] = dice.choice(
-            [flipped, dice.randbytes(n), bytes(n), b"\xff" * n, data[other : other + n]]
-        )
-        data = data[: max(at, 1)] if dice.random() < 1 / 30 else data
+        at, n = dice.randrange(len(data)), dice.choice([1, 2, 4, 8, 64])
+        match dice.randrange(6):
+            case 0:
+                data[at] ^= 1 << dice.randrange(8)
+            case 1:
+                data[at : at + n] = dice.randbytes(n)
+            case 2:
+                data[at : at + n] = bytes(n)
+            case 3:
+                data[at : at + n] = b"\xff" * n
+            case 4:
+                other = dice.randrange(len(data))
+                data[at : at + n] = data[other : other + n]
+            case 5:
+                data = data[: max(at, 1)] if dice.random() < 0.2 else data
     return bytes(data)
 
 

@@ -19,7 +19,7 @@ from oracles.inside import (
     drive,
     heed_signals,
 )
-from oracles.lost_workers import deadly
+from oracles.lost_workers import deadly, deadly_once
 
 import mcgw
 from mcgw.errors import RunError, StoppedError
@@ -127,9 +127,9 @@ def test_a_block_that_is_lost_is_submitted_once_more_when_the_others_are_done(ex
 def test_a_task_that_kills_its_worker_is_tried_once_more_and_given_up(mark, tmp_path):
     """A worker that is killed is replaced; a task that kills two is the only one that is not done."""
     done, given_up = [], r"16 \.\.\. 23 were lost twice by the executor \(BrokenProcessPool"
-    words = (str(tmp_path / mark),) if mark else ()
-    with Jobs(1) as pool, nullcontext() if mark else pytest.raises(RunError, match=given_up):
-        drive(pool, SPANS[:3], deadly, lambda s: (s.first, *words), lambda s, _: done.append(s), Signals())
+    task, words = (deadly_once, (str(tmp_path / mark),)) if mark else (deadly, ())
+    with Jobs(1) as executor, nullcontext() if mark else pytest.raises(RunError, match=given_up):
+        drive(executor, SPANS[:3], task, lambda s: (s.first, *words), lambda s, _: done.append(s), Signals())
     assert sorted(done) == [span for span in SPANS[:3] if mark or span.first != 16]
 
 

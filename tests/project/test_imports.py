@@ -135,5 +135,5 @@ def test_what_is_imported_would_be_seen(after):
     assert {"analytic", "numpy", "scipy"} <= after["analytic"]
     assert "numba" in after["run"]
     assert "matplotlib.figure" in after["compare"]
-    assert "mcgw.commands.surface" in after["parser"]
+    assert "mcgw.commands.maps" in after["parser"]
     assert VALIDITY

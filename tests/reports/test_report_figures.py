@@ -25,7 +25,7 @@ def test_spread_is_std_over_mean(make_scene):
     ensemble = mcgw.simulate(
         make_scene(separations=h, heights=heights, quantities=names, n_surfaces=60, seed=4)
     )
-    for series, name in zip(spread_panel(ensemble).series, names, strict=True):
+    for series, name in zip(spread_panel("", ensemble, np.sort(h)).series, names, strict=True):
         values = ensemble.values(name).astype(float)
         assert series.label == name
         np.testing.assert_array_equal(series.points.x, h)

@@ -190,7 +190,9 @@ def test_rows_of_a_run_in_progress_are_those_of_a_list(scene, tmp_path):
     last.unlink()
     held, whole = mcgw.open_ensemble(path).sums, mcgw.simulate(asked)
     assert not read_attributes(path)["complete"]
-    assert "  surfaces      96 so far, of 100, of 3000 asperities each (fixed)" in call("show", path).stdout
+    shown = call("show", path).stdout
+    assert "Ensemble of 96 surfaces of 3000 asperities" in shown
+    assert "  complete     no: 96 of 100\n" in shown
     for start, stop in product((0, 5, 15, 16, 33), (16, 17, 40, 48, None)):
         if start < (stop or 96):
             np.testing.assert_array_equal(held.read("load", start, stop), whole.load[start : stop or 96])

@@ -1,18 +1,20 @@
-"""``mcgw fit``: a scene from a measured map, from profiles, or from numbers of an instrument."""
+"""Measured and made maps: ``mcgw fit``, a scene from a map, profiles or numbers; ``mcgw surface``, a map."""
 
+import re
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from mcgw.commands.kinds import Call, Pixel, Table, Unit, file_in, file_out, pair, quantity
-from mcgw.commands.outputs import FIGURE, NPY, TOML, Output, check_outputs, details, news, notes
+from mcgw.commands import kinds
+from mcgw.commands.outputs import FIGURE, JSON, NPY, TOML, Format, Output, check_outputs, details, news, notes
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 
-E_STAR = 100e9  # Pa, default
+if TYPE_CHECKING:
+    from mcgw.scene.scene import Scene
 
 
-def _maps(paths: list[Path], call: Call) -> list[Path]:
+def _maps(paths: list[Path], call: kinds.Call) -> list[Path]:
     """Return maps or profiles; the files beside them that say their units are read as well."""
     from mcgw.maps.map_files import files_of_map
 
@@ -21,7 +23,7 @@ def _maps(paths: list[Path], call: Call) -> list[Path]:
 
 
 def fit(
-    map: Annotated[list[Path], file_in(opened=_maps)] = [],  # noqa: A002, B006
+    map: Annotated[list[Path], kinds.file_in(opened=_maps)] = [],  # noqa: A002, B006
     *,
     iso: list[str] | None = None,
     cutoff: str | None = None,
@@ -31,18 +33,18 @@ def fit(
     spikes: SpikesTo = "keep",
     lines: LinesTo = "keep",
     trim: int = 0,
-    pixel: Pixel = None,
-    unit: Unit = None,
+    pixel: kinds.Pixel = None,
+    unit: kinds.Unit = None,
     missing_value: float | None = None,
     use: Literal["auto", "moments", "summits", "caps"] = "auto",
     heights: Literal["gaussian", "nayak", "table", "measured", "summits"] = "gaussian",
-    E_star: Annotated[float | None, quantity("Pa")] = None,
-    nominal_area: Annotated[float | None, quantity("m^2")] = None,
+    E_star: Annotated[float | None, kinds.quantity("Pa")] = None,
+    nominal_area: Annotated[float | None, kinds.quantity("m^2")] = None,
     parts: int = 4,
-    summits: Table = None,
-    tiles: Table = None,
-    picture: Annotated[Path | None, file_out(FIGURE)] = None,
-    output: Annotated[Path, file_out(TOML)],
+    summits: kinds.Table = None,
+    tiles: kinds.Table = None,
+    picture: Annotated[Path | None, kinds.file_out(FIGURE)] = None,
+    output: Annotated[Path, kinds.file_out(TOML)],
 ) -> None:
     """Fit summit density, radius and spread to measured height maps, and write a scene.
 
@@ -104,7 +106,7 @@ def fit(
     from mcgw.maps.summit_sums import SUMMITS, TILES
 
     assumed = " (assumed; give --E-star)" if E_star is None else ""
-    E_star = E_STAR if E_star is None else E_star
+    E_star = 100e9 if E_star is None else E_star
     if iso is not None:
         if map:
             raise ValueError(f"{map[0]}: give a map, or --iso with numbers, not both")
@@ -113,13 +115,11 @@ def fit(
         raise ValueError("MAP: give a map or profiles, or --iso with numbers such as Sq=0.8um Sdq=0.12")
     if cutoff is None:
         raise ValueError("--cutoff: give the shortest wavelength of the roughness, such as 5um, or none")
-    given = {
+    asked = preparation_of({
         "cutoff": cutoff, "long_cutoff": long_cutoff, "form": form, "missing": missing, "spikes": spikes,
         "lines": lines, "trim": trim, "parts": parts,
-    }  # fmt: skip
-    asked = preparation_of(given)
+    })  # fmt: skip
     names = [path.name for path in map]
-    beside = {"--summits": summits, "--tiles": tiles, "--picture": picture}
     if picture and len(map) > 1:
         raise ValueError(f"--picture {picture}: draws one map; give one")
     if heights == "measured":
@@ -127,7 +127,7 @@ def fit(
     size = None if pixel is None else (pixel, pixel)
     of_file: dict[str, Any] = {"pixel": size, "unit": unit, "missing": missing_value}
     found, ready, assumed_unit = fit_sources(map, partial(read_heights, **of_file), asked, use)
-    for option, path in beside.items():
+    for option, path in (("--summits", summits), ("--tiles", tiles), ("--picture", picture)):
         if path and ready is None:
             raise ValueError(f"{option} {path}: a profile shows no summits, and has no sub-areas; give a map")
     filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian)"
@@ -173,7 +173,7 @@ def _of_numbers(
 
     numbers: dict[str, str] = {}
     for part in iso:
-        key, value = pair(part, "--iso", "NAME=VALUE, such as Sq=0.8um")
+        key, value = kinds.pair(part, "--iso", "NAME=VALUE, such as Sq=0.8um")
         if key in numbers:
             raise ValueError(f"--iso: gives {key} more than once")
         numbers[key] = value
@@ -202,3 +202,94 @@ def _parameters(s: Any, assumed: str) -> str:
         f"sigma = {s.sigma:.4g} m, radius = {s.radius:.4g} m, eta = {s.eta:.4g} 1/m^2, "
         f"E_star = {s.E_star:.4g} Pa{assumed}"
     )
+
+
+def surface(
+    scene: Annotated["Scene | None", kinds.scene_file()] = None,
+    *,
+    surface: int = 0,
+    shape: str = "1024",
+    width: kinds.Length = None,
+    periodic: bool = False,
+    from_spectrum: str | None = None,
+    pixel: kinds.Length = None,
+    seed: int = 0,
+    output: Path,
+) -> None:
+    """Write one surface of an ensemble, or a Gaussian map, as a height map.
+
+    Parameters
+    ----------
+    surface : I
+        number of the surface
+    shape : N
+        columns of a square map, or COLUMNSxROWS
+    width : LENGTH
+        extent of the map along x, such as 200um; default: that of the nominal area, a square
+    periodic
+        let caps reach across the edges
+    from_spectrum : LIST
+        a Gaussian map instead: rms=1um,long=100um,short=5um[,hurst=0.8], or m0=..,m2=..,m4=.. (SI)
+    pixel : LENGTH
+        pixel of a Gaussian map, such as 0.5um
+    seed : K
+        seed of a Gaussian map
+    output : FILE
+        file ending in .npy, .h5 or .sdf
+
+    Examples
+    --------
+    mcgw surface runs/demo.toml --surface 3 -o map.h5
+    """
+    import numpy as np
+
+    from mcgw.maps.envelope import envelope, hidden_summits
+    from mcgw.maps.estimates import CROWDED
+    from mcgw.maps.map_files import WRITTEN, files_of_map, write_map
+    from mcgw.maps.synthetic import asperities_of, gaussian_map, moments_on_grid, spectrum_from
+    from mcgw.scene.scene_file import scene_text
+
+    found = re.fullmatch(r"(\d{1,9})(?:x(\d{1,9}))?", shape)
+    if found is None:
+        raise ValueError(
+            f"--shape {shape!r}: give columns, such as 1024, or columns and rows, such as 1024x512"
+        )
+    points = int(found[2] or found[1]), int(found[1])
+    map_file, *beside = files_of_map(output)
+    check_outputs([Output(map_file, Format("a map", WRITTEN)), *(Output(path, JSON) for path in beside)])
+    if from_spectrum is not None:
+        if scene is not None:
+            raise ValueError("--from-spectrum: draws a map without asperities; leave out SCENE")
+        if pixel is None:
+            raise ValueError("--pixel: give the size of a pixel, as --pixel 0.5um")
+        if seed < 0:
+            raise ValueError(f"--seed {seed}: give a whole number >= 0")
+        spectrum, grid = spectrum_from(from_spectrum), (pixel, pixel)
+        made = gaussian_map(spectrum, points, grid, np.random.default_rng(seed))
+        m = moments_on_grid(spectrum, points, grid)
+        return news(
+            *write_map(made, output),
+            f"m0 = {m.m0:.6g} m^2, m2 = {m.m2:.6g}, m4 = {m.m4:.6g} 1/m^2, alpha = {m.alpha:.4g}",
+            f"summits (Nayak): eta = {m.eta:.4g} 1/m^2, R = {m.radius:.4g} m, sigma = {m.sigma:.4g} m",
+        )
+    if scene is None:
+        raise ValueError("SCENE: give a scene (TOML), or --from-spectrum")
+    field = asperities_of(scene, surface)
+    topography = envelope(field, points, width=width, periodic=periodic)
+    news(*write_map(topography, output, field, scene=scene_text(scene)))
+    hidden = hidden_summits(field, periodic=topography.periodic)
+    touching = field.z > scene.lowest * scene.surface.sigma
+    overlap = field.number / (field.size[0] * field.size[1]) * field.radius * scene.surface.sigma
+    rows, columns = topography.heights.shape
+    dx, dy = topography.pixel
+    news(
+        f"{columns} x {rows} points of {dx:.4g} x {dy:.4g} m, {field.number} asperities, seed {scene.seed}",
+        f"eta R sigma = {overlap:.4g}; hidden under taller neighbours: {hidden.sum()} summits "
+        f"({100 * hidden.mean():.3g} %), {(hidden & touching).sum()} of the {touching.sum()} that touch at "
+        f"h = {scene.lowest:g}",
+    )
+    if overlap > CROWDED:
+        notes("the caps overlap, so this map is not a field of independent asperities")
+    if max(topography.pixel) > 0.5 * (2 * field.radius * scene.surface.sigma) ** 0.5:
+        notes("a pixel is wider than half a cap, sqrt(2 R sigma); give a larger --shape")
+    return None

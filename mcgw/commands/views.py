@@ -1,11 +1,13 @@
-"""What others read: ``mcgw report``, ``mcgw figures``, and tables for programs by ``mcgw export``."""
+"""Views of results: ``mcgw compare``, ``converge``, ``tradeoff``, ``report``, ``figures`` and ``export``."""
 
 from pathlib import Path
 from typing import Annotated, Literal
 
-from mcgw.commands.kinds import MaybeScene, SceneOrFile, file_in, file_out, values
+from mcgw.commands.kinds import MaybeScene, SceneIn, SceneOrFile, Table, file_in, file_out, quantity, values
 from mcgw.commands.outputs import (
+    ALL,
     CSV,
+    FIGURE,
     HTML,
     TABLE_OR_FIGURE,
     Format,
@@ -13,8 +15,116 @@ from mcgw.commands.outputs import (
     check_outputs,
     details,
     news,
+    says,
     tell_cautions,
 )
+
+_TRADED = "{}-tradeoff.csv", "{}-tradeoff-measured.csv", "{}-tradeoff.png"
+
+
+def compare(
+    file: Annotated[Path, file_in("FILE", "file of an ensemble or of a sweep (HDF5)")],
+    *,
+    output: Annotated[Path, file_out(FIGURE, "{}.png")],
+    csv: Table = None,
+    laws: bool = False,
+) -> bool:
+    """Compare an ensemble or a sweep with theory: verdict and figure (exit code 1 if they disagree).
+
+    Parameters
+    ----------
+    output : PNG
+        figure (.png, .pdf, .svg, ...)
+    csv : FILE
+        also write the table, of at most 100 separations
+    laws
+        also test the values of single surfaces against their exact distribution
+
+    Examples
+    --------
+    mcgw compare demo.h5 -o demo.png
+    """
+    from mcgw.figures.panels import save
+    from mcgw.figures.studies import comparison_figure
+    from mcgw.reports.text import comparison_text
+    from mcgw.statistics.comparison import Comparison, compare as compared
+    from mcgw.store.ensembles import open_results
+
+    results = open_results(file)
+    found = compared(results, laws=laws)
+    save(comparison_figure(found), output)
+    news(found, f"{output}: figure")
+    if csv:
+        found.table().write(csv)
+        news(f"{csv}: the table")
+    if isinstance(found, Comparison):
+        details(comparison_text(found))
+    news(f"next: mcgw report {file}")
+    tell_cautions(results, f"mcgw show {file}")
+    return found.verdict.agrees
+
+
+def converge(
+    scene: SceneIn,
+    *,
+    output: Annotated[list[Path], file_out(TABLE_OR_FIGURE, "out", names=("{}-converge.png",))],
+) -> bool:
+    """Test statistical convergence: slopes, coverage, variance, skewness, ... (exit code 1 if it fails).
+
+    Parameters
+    ----------
+    output : DIR
+        folder of the figure
+
+    Examples
+    --------
+    mcgw converge runs/demo.toml -o out
+    """
+    from mcgw.figures.panels import save
+    from mcgw.figures.studies import convergence_figure
+    from mcgw.statistics.convergence import SEEDS, converge as tested
+
+    found = tested(scene)
+    save(convergence_figure(found), output[0])
+    many = f"{SEEDS} ensembles of {found.scene.n_surfaces} surfaces"
+    news(f"convergence {found.word}: p = {found.p:.3g} over all checks of {many}", f"{output[0]}: figure")
+    if says(ALL) or not found.passed:
+        news(found.table().text())
+    return found.passed
+
+
+def tradeoff(
+    scene: SceneIn,
+    *,
+    output: Annotated[list[Path], file_out(TABLE_OR_FIGURE, "out", names=_TRADED)],
+    seconds: Annotated[float, quantity("s")] = 60.0,
+) -> None:
+    """Measure what each answer costs, how exact it is, and recommend a way.
+
+    Parameters
+    ----------
+    output : DIR
+        folder of tables and figure
+    seconds : TIME
+        time limit, s, or with a unit, such as "5 min"
+
+    Examples
+    --------
+    mcgw tradeoff runs/demo.toml -o out
+    """
+    from mcgw.figures.panels import save
+    from mcgw.figures.studies import tradeoff_figure
+    from mcgw.statistics.tradeoff import tradeoff as studied
+    from mcgw.statistics.ways import TARGETS
+
+    table, measured, figure = output
+    found = studied(scene, seconds=seconds)
+    found.table().write(table)
+    found.measurements().write(measured)
+    save(tradeoff_figure(found), figure)
+    news(found.sheet(TARGETS).text())
+    news(f"{table}: what to run for each error ({found.seconds:.0f} s)", f"{figure}: figure")
+    details("", found.measurements().text())
 
 
 def report(
