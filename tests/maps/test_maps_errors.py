@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from oracles.fit_of_maps import fit_map
+from oracles.rough import fit_map
 from scipy.special import polygamma
 from scipy.stats import gamma, norm, t as t_law
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.fit_of_maps import fit_map
 from oracles.inside import SUMMITS, envelope, hidden_summits, visible, write_scene
+from oracles.rough import fit_map
 from oracles.summits_by_hand import summit_contact
 
 import analytic

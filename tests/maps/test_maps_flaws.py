@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.fit_of_maps import fit_map
 from oracles.inside import (
     Preparation,
     fit_prepared,
@@ -17,6 +16,7 @@ from oracles.inside import (
     visible,
     without_form,
 )
+from oracles.rough import fit_map
 from scipy.optimize import brentq
 
 import mcgw

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
 from numpy.polynomial.polynomial import polyder, polyval2d
-from oracles.fit_of_maps import fit_map
 from oracles.inside import (
     SUMS,
     Summits,
@@ -18,6 +17,7 @@ from oracles.inside import (
     variation,
     visible,
 )
+from oracles.rough import fit_map
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.stats import norm

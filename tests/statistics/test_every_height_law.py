@@ -6,13 +6,22 @@ heights); a separation that nothing reaches has mean and variance 0, and no warn
 
 import numpy as np
 import pytest
+import scipy.stats
 from oracles.inside import cautions, forecast, report_html, summary
-from oracles.thirteen_height_laws import LAWS, SAMPLE
 
 import mcgw
-from analytic import QUANTITIES, Exponential, MeasuredHeights
+from analytic import QUANTITIES, Exponential, ExponentialHeights, Gaussian, MeasuredHeights
 from mcgw import compare, converge
 
+SAMPLE = np.random.default_rng(1).weibull(1.6, size=300)
+LAWS = {
+    "gaussian": Gaussian(), "exponential": ExponentialHeights(), "weibull 1.5": mcgw.Weibull(1.5),
+    "weibull 3.6": mcgw.Weibull(3.6), "nayak": mcgw.Nayak(2.0), "table": mcgw.HeightTable.of(SAMPLE),
+    "measured": MeasuredHeights(SAMPLE), "uniform": mcgw.ScipyHeights(scipy.stats.uniform()),
+    "beta": mcgw.ScipyHeights(scipy.stats.beta(2, 3)), "t": mcgw.ScipyHeights(scipy.stats.t(5)),
+    "lognormal": mcgw.ScipyHeights(scipy.stats.lognorm(0.3)),
+    "gamma": mcgw.ScipyHeights(scipy.stats.gamma(4)), "triangle": mcgw.ScipyHeights(scipy.stats.triang(0.3)),
+}  # fmt: skip
 ATTRIBUTES = {
     "digest": "0", "seed": 1, "sampler": "cells", "date": "", "versions": "", "commit": "", "cpu": "",
     "scene": "", "complete": True, "wall_seconds": 1.0,
