@@ -11,14 +11,14 @@ from analytic import PER_AREA
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.intervals import CONFIDENCE, interval_of
 from mcgw.ensemble.results import Held, Labelled, Variable
-from mcgw.formats.table import Shown, optional
-from mcgw.machine.terminal import brief, plotted, quantity_and_axes
+from mcgw.formats.table import Drawn, optional
+from mcgw.machine.terminal import brief
 from mcgw.scene.scene import Scene
 
 _SAME = 1e-9  # d/sigma
 
 
-class Dataset(Shown):
+class Dataset(Drawn):
     """Quantities of surfaces at the separations of their scenes, SI, and statistics over the surfaces.
 
     What is an array has first the shape of the points, which a single scene does not have. The quantities
@@ -219,24 +219,6 @@ class Dataset(Shown):
                 "mean at any"
             )
         return self._at(apart.argmin(axis=-1))
-
-    def plot(self, quantity: str | None = None, ax: Any = None) -> Any:
-        """Draw the mean of a quantity against the separation, with its interval; of each point.
-
-        Parameters
-        ----------
-        quantity : str, optional
-            Default: the first quantity of the scene.
-        ax : matplotlib Axes, optional
-            Axes to draw on, also as the first argument; default: new ones.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            With labels.
-        """
-        quantity, ax = quantity_and_axes(quantity, ax)
-        return plotted(self, ax, quantity=quantity or self.quantities[0])
 
     def _of_each(self, quantity: str, get: Callable[[int, Held, str], Any]) -> Array:
         """One array over all points, in the shape of the axes, per area if requested."""

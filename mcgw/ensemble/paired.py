@@ -1,7 +1,6 @@
 """Ensembles, or points of a sweep, over the same surfaces: ratios and differences of means, and slopes."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.special import ndtri
@@ -10,8 +9,7 @@ from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import CONFIDENCE
 from mcgw.ensemble.pooled import PointResults, Pooled
-from mcgw.formats.table import SEPARATION, Column, Shown, Table
-from mcgw.machine.terminal import plotted
+from mcgw.formats.table import SEPARATION, Column, Drawn, Table
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import with_sampling
 
@@ -19,7 +17,7 @@ _PAIRED = ("surface", "separations", "heights", "n_asperities", "count", "seed")
 
 
 @dataclass(frozen=True, repr=False)
-class Paired(Shown):
+class Paired(Drawn):
     """Ratio of two means over the same surfaces; arrays over the separations.
 
     Parameters
@@ -52,10 +50,6 @@ class Paired(Shown):
             raise ValueError(f"level = {level!r}: give a number between 0 and 1, such as 0.95")
         half = ndtri((1 + level) / 2) * self.stderr
         return self.ratio - half, self.ratio + half
-
-    def plot(self, ax: Any = None) -> Any:
-        """Draw the ratio with its 95 % interval; returns the axes."""
-        return plotted(self, ax)
 
     def sheet(self) -> Table:
         """Ratios at some separations."""
@@ -92,7 +86,7 @@ class Difference:
 
 
 @dataclass(frozen=True, repr=False)
-class Slopes(Shown):
+class Slopes(Drawn):
     """Change of a mean with a key, between neighbouring points of a sweep.
 
     Parameters
@@ -129,10 +123,6 @@ class Slopes(Shown):
     value: Array
     stderr: Array
     theory: Array
-
-    def plot(self, ax: Any = None, *, k: int = 0) -> Any:
-        """Draw the slopes at one separation, given by its index; returns the axes."""
-        return plotted(self, ax, k=k)
 
     def sheet(self) -> Table:
         """Display slopes at the first separation, for some values of the key."""

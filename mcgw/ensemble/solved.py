@@ -15,8 +15,7 @@ from mcgw.ensemble.at_load import GAPS, Answers, answers_at, controlled, exact_m
 from mcgw.ensemble.budget import Budget, budget_of, corrected
 from mcgw.ensemble.intervals import FEWEST, laws_are_quick
 from mcgw.ensemble.solved_table import elastic_verdict, sheet_of, table_of
-from mcgw.formats.table import Shown
-from mcgw.machine.terminal import plotted
+from mcgw.formats.table import Drawn
 from mcgw.scene.scene import Scene
 from mcgw.validity.lookup import validity_of
 from mcgw.validity.model_error import Validity
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class Solution(Shown):
+class Solution(Drawn):
     """The state of surfaces at one given load or real area.
 
     Parameters
@@ -273,9 +272,5 @@ class Solution(Shown):
     def against_elasticity(self) -> Validity:
         """Measured error of the model at this separation."""
         return validity_of(self.scene, [self.theory["separation"]])
-
-    def plot(self, ax: Any = None) -> Any:
-        """Draw how the separation differs from surface to surface; returns the axes."""
-        return plotted(self, ax)
 
     corrected, sheet, table = corrected, sheet_of, table_of

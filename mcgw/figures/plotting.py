@@ -65,9 +65,9 @@ def panel_of(result: Any) -> Panel:
 
 
 @panel_of.register
-def _(result: Ensemble, *, quantity: str) -> Panel:
+def _(result: Ensemble, *, quantity: str | None = None) -> Panel:
     """Mean and interval; the band holds 90 % of all surfaces; two thirds where no law is known."""
-    result = shown(result)
+    result, quantity = shown(result), quantity or result.quantities[0]
     q, order = result.scene.quantity(quantity), np.argsort(result.separations, kind="stable")
     h, mean, std = (x[order] for x in (result.separations, result.mean(quantity), result.std(quantity)))
     low, high = (x[order] for x in result.interval(quantity))
@@ -115,9 +115,10 @@ def _(result: Paired) -> Panel:
 
 
 @panel_of.register
-def _(result: Sweep, *, quantity: str) -> Panel:
+def _(result: Sweep, *, quantity: str | None = None) -> Panel:
     """Return a line a point, from the first to the last along all axes."""
     order, size = np.argsort(result.separations, kind="stable"), result.axes.size
+    quantity = quantity or result.quantities[0]
     means, errors = (get(quantity).reshape(size, -1) for get in (result.mean, result.stderr))
     h, some = result.separations[order], evenly(size, _MOST_LINES)
 
@@ -135,7 +136,7 @@ def _(result: Sweep, *, quantity: str) -> Panel:
 
 
 @panel_of.register
-def _(result: Slopes, *, k: int) -> Panel:
+def _(result: Slopes, *, k: int = 0) -> Panel:
     """At one separation, and at the first values of all other keys."""
     value, error, theory = (
         np.moveaxis(x, result.axis, 0)[..., k].reshape(len(result.at), -1)[:, 0]

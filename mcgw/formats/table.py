@@ -227,8 +227,8 @@ class Drawn(Shown):
         ax : matplotlib Axes, optional
             Axes to draw on; default: new ones.
         **options
-            ``quantity``, as before; ``want`` of error against time: "mean", "std", "quantile",
-            "distribution", "conductance" or "values".
+            ``quantity``, as before; ``k`` of slopes, the number of a separation; ``want`` of error against
+            time: "mean", "std", "quantile", "distribution", "conductance" or "values".
         """
         for each in given:
             options |= {"quantity": each} if isinstance(each, str) else {"ax": each}

@@ -109,11 +109,6 @@ def bind_drawing(draw: Callable[..., Any]) -> None:
     _bound["draw"] = draw
 
 
-def quantity_and_axes(first: Any, second: Any) -> tuple[str | None, Any]:
-    """Return a quantity and axes that were given in either order."""
-    return (second, first) if first is not None and not isinstance(first, str) else (first, second)
-
-
 def plotted(result: Any, ax: Any, **options: Any) -> Any:
     """Draw a result on axes, new ones if `ax` is None, and return them.
 

@@ -3,14 +3,12 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from analytic import SpectralMoments
 from analytic.arrays import Array
-from mcgw.formats.table import Column, Shown, Table
-from mcgw.machine.terminal import plotted
+from mcgw.formats.table import Column, Drawn, Table
 from mcgw.maps.estimates import (
     METHODS,
     SUMMITS,
@@ -45,7 +43,7 @@ _ONE_RADIUS = 0.17  # half of the spread of curvatures of Gaussian surfaces
 
 
 @dataclass(frozen=True, repr=False)
-class Fit(Shown):
+class Fit(Drawn):
     """Result of `mcgw.fit`: what a map says about its summits.
 
     Parameters
@@ -162,10 +160,6 @@ class Fit(Shown):
             return "moments"
         one_radius = "caps" in self.estimates and self.spread_of_curvatures < _ONE_RADIUS
         return "caps" if one_radius else "summits"
-
-    def plot(self, ax: Any = None) -> Any:
-        """Draw the summit heights with the Gaussian distribution of the same spread; returns the axes."""
-        return plotted(self, ax)
 
     def sheet(self) -> Table:
         """Estimates by all methods, with standard errors, and the first of the cautions."""

@@ -24,7 +24,6 @@ without bias. They are negative for short waves: those take back what the longer
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy import fft
@@ -32,8 +31,7 @@ from scipy.special import dawsn, stdtrit
 
 from analytic import SpectralMoments
 from analytic.arrays import Array
-from mcgw.formats.table import Column, Shown, Table
-from mcgw.machine.terminal import plotted
+from mcgw.formats.table import Column, Drawn, Table
 from mcgw.maps.estimates import Estimate, Roughness, roughness_of
 from mcgw.maps.steps import Form
 from mcgw.maps.topography import Profile, filter_variance
@@ -49,7 +47,7 @@ _LOW = slice(1, 5)  # waves that show what the form removed
 
 
 @dataclass(frozen=True, repr=False)
-class ProfileFit(Shown):
+class ProfileFit(Drawn):
     """Surface parameters from profiles, if the surface is isotropic and its heights are Gaussian.
 
     Parameters
@@ -92,10 +90,6 @@ class ProfileFit(Shown):
     def estimates(self) -> dict[str, Estimate]:
         """The only estimate, ``moments``, under the same name as in the fit of a map."""
         return {"moments": Estimate(*(self.numbers[name] for name in ("eta", "radius", "sigma")))}
-
-    def plot(self, ax: Any = None) -> Any:
-        """Draw the distributions of all heights and, derived from it, of the summits; returns the axes."""
-        return plotted(self, ax)
 
     def sheet(self) -> Table:
         """Each number with its 95 % interval, and the first of the cautions."""
