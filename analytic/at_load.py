@@ -34,7 +34,7 @@ _EXACT, _AT_LAST = 2e-6, 1e-3  # of its mean and its root mean square; with most
 _ALL = 1e-6  # of what surfaces hold that is lost with those of heavy tails; else that of all is known better
 _DEEPEST = 20.0  # penetration over sigma that no asperity reaches
 _PARTS = np.array([0.25, 0.5, 0.75, 1.0])  # of the penetration at which one asperity has all of the load
-_CELLS = 4096  # of the heights, at least
+_CELLS = 3072  # of the heights, at least
 _STEP = 3e-4  # of differences, over the separation or the penetration of an asperity with all of the load
 _GRID, _SPREADS = 4096, 12.0  # points, and standard deviations of the given sum, over which others bear it
 
@@ -173,7 +173,7 @@ def _gains(
     terms = rule.terms(several, at, model.grading, model.ways).reshape(-1, len(several), at.size)
     values = np.moveaxis(terms * units, 0, -1)  # here, one and two steps on: shape (several, 3, heights)
     means, squares = (rule.probabilities * values**k for k in (1, 2))
-    low, high, own = in_cells(model, several, h, rule, _CELLS, float(at[-1]))
+    low, high, own = in_cells(model, several, h, rule, terms[..., 0], _CELLS, float(at[-1]))
     cells = (low + high).T / 2 * units  # what asperities add in cells
     p, added = np.append(rule.probabilities, rule.below), np.append(values[0, 0], 0.0)
     sum_of, square = (float(n * each[0, 0].sum()) for each in (means, squares))

@@ -45,7 +45,9 @@ def distribution_of(model: Any, quantity: str, h: float, *, other: bool = False)
 def one_asperity(model: Any, quantity: str, h: float, cells: int) -> OneAsperity:
     """Return what one asperity adds, over the scale of the quantity, by cells of heights."""
     lowest = min(h, model.ways.of(quantity).lowest(h))
-    low, high, p = in_cells(model, [quantity], h, model.rule([h], [quantity]), cells, lowest)
+    rule = model.rule([h], [quantity])
+    at_nodes = rule.terms([quantity], [h], model.grading, model.ways)
+    low, high, p = in_cells(model, [quantity], h, rule, at_nodes, cells, lowest)
     low, high = low[:, 0], high[:, 0]
     touching = ((low != 0) | (high != 0)) & (p > 0)
     low, high, p = (x[touching] for x in (np.minimum(low, high), np.maximum(low, high), p))
@@ -54,19 +56,19 @@ def one_asperity(model: Any, quantity: str, h: float, cells: int) -> OneAsperity
 
 
 def in_cells(
-    model: Any, quantities: Sequence[str], h: float, rule: HeightRule, cells: int, lowest: float
+    model: Any, several: Sequence[str], h: float, rule: HeightRule, at_nodes: Array, cells: int, lowest: float
 ) -> tuple[Array, Array, Array]:
     """Return what asperities add at both ends of cells between the nodes of a rule, and probabilities.
 
     Over scales, shape (cells, quantities). Listed heights are cells of no width; others keep the means.
     """
-    at_nodes, p = rule.terms(quantities, [h], model.grading, model.ways), rule.probabilities
+    p = rule.probabilities
     if not p.any() or isinstance(model.heights, MeasuredHeights):
         return at_nodes, at_nodes, p
     left, wide, own, ratios = _cells_between(model, rule, cells, max(lowest, model.heights.support[0]))
     at = np.concatenate([left + _JUST * wide, left + wide])  # right of where contacts begin
     nodes = HeightRule(at, 0 * at, rule.below, None if ratios is None else np.tile(ratios, 2))
-    low, high = np.split(nodes.terms(quantities, [h], model.grading, model.ways), 2)
+    low, high = np.split(nodes.terms(several, [h], model.grading, model.ways), 2)
     missing, size = 2 * p @ at_nodes - own @ (low + high), own @ (np.abs(low) + np.abs(high))
     share = missing / np.where(size > 0, size, 1.0)
     return low + share * np.abs(low), high + share * np.abs(high), own
