@@ -242,7 +242,11 @@ def test_what_has_no_table_is_told(scene, ensemble, tmp_path):
         (scene, {"to": "calculix", "table": "conductance-gap"}, "calculix does not support it; choose"),
         (scene, {"to": "ansys"}, r"^to = 'ansys': choose one of calculix, abaqus, moose, comsol, json$"),
         (scene, {"to": "calculix", "points": 300}, "^points = 300: calculix reads at most 200 lines; give"),
-        (scene, {"pressures": [2.0, 1.0]}, r"^pressures = \[2\.0, 1\.0\]: give two or more increasing numb"),
+        (
+            scene,
+            {"pressures": [1.0, 3.0, 2.0]},
+            r"^pressures = \[1\.0, 3\.0, 2\.0\]: give two or more increasing numb",
+        ),
         (scene, {"pressures": ["1 N", "2 N"]}, r"^pressures = \['1 N', '2 N'\]: give two .* Pa; value 1"),
     ):
         with pytest.raises(ValueError, match=told) as caught:
