@@ -21,7 +21,7 @@ from mcgw.figures.panels import save
 from mcgw.figures.studies import tradeoff_figure
 from mcgw.statistics.measured_ways import Answers, moved
 from mcgw.statistics.tradeoff import Tradeoff, tradeoff
-from mcgw.statistics.ways import TARGETS, WANTS, Advice, Way, surfaces_for
+from mcgw.statistics.ways import TARGETS, WANTS, Advice, Way, advise, surfaces_for
 
 HERE = Path(__file__).parent
 FOLDER = HERE / "speed"
@@ -131,7 +131,7 @@ def companions(name: str, study: Tradeoff) -> Iterator[dict[str, Any]]:
     }}  # fmt: skip
     for what, change in changes.items():
         ways = [replace(w, **change) if w.name == first.way.name else w for w in study.ways]
-        then = replace(study, ways=tuple(ways)).advice("values", 1e-6)
+        then = advise("values", 1e-6, ways, study.scene)
         yield {
             "scene": name,
             "advised": first.way.name,

@@ -53,7 +53,7 @@ def compare(
     results = open_results(file)
     found = compared(results, laws=laws)
     save(comparison_figure(found), output)
-    news(found, f"{output}: figure")
+    news(found.sheet().text(whole=True), f"{output}: figure")
     if csv:
         found.table().write(csv)
         news(f"{csv}: the table")

@@ -2,6 +2,7 @@
 
 import textwrap
 from collections.abc import Sequence
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,6 +34,8 @@ _RULES: dict[str, dict[str, Any]] = {
     "theory": {"color": style.THEORY, "marker": "*"},
     "exact law": {"color": style.HOMOGENEOUS, "marker": "P"},
     "solve": {"color": look("tail")["color"], "marker": "o"},
+    "surfaces": {"color": look("tail")["color"], "marker": "s"},
+    "boundary elements": {"color": style.HOMOGENEOUS, "marker": "D"},
 }
 
 
@@ -188,16 +191,16 @@ def checks_panel(found: "Convergence") -> Panel:
 
 
 def tradeoff_figure(found: "Tradeoff") -> FigureData:
-    """Error against time, a panel for each answer."""
+    """Error against time, a panel for each answer, and the ladder of models below."""
     from mcgw.statistics.ways import WANTS
 
-    title = f"{shown_title(found.scene, 'Speed and accuracy')}\n{found.worth}"
+    title = f"{shown_title(found.scene, 'Speed and accuracy')}\n{found.sentence}"
     n, ways = found.scene.n_surfaces, found.ways
     times = [p.seconds for p in found.points]
     times += [way.seconds(n) for way in ways if way.want == "values" or not way.draws]
     within = min(times) / 2, 2 * max(times)
-    panels = tuple(errors_panel(found, want, xlim=within) for want in WANTS)
-    return FigureData(title, "", panels)
+    panels = (*(errors_panel(found, want, xlim=within) for want in WANTS), _ladder_panel(found))
+    return FigureData(title, found.worth, panels)
 
 
 def errors_panel(found: "Tradeoff", want: str = "mean", **limits: Any) -> Panel:
@@ -212,8 +215,6 @@ def errors_panel(found: "Tradeoff", want: str = "mean", **limits: Any) -> Panel:
     def paint(axis: Any) -> None:
         for way in kept:
             _draw_way(axis, way, found)
-        if want == "conductance" and not np.isnan(found.model):
-            axis.axhline(found.model, color=style.LEVEL, label="error of the model")
         axis.set(ylim=(_FLOOR / 3, 3), **limits)
 
     return Panel(title, _TIME, _BOUND, scales=("log", "log"), paint=paint)
@@ -233,3 +234,28 @@ def _draw_way(axis: Any, way: "Way", found: "Tradeoff") -> None:
         axis.errorbar(time, _TWO * error, _TWO**2 * stderr, ls="", ms=4, label=way.name, **own)
     if not way.draws:
         axis.axhline(floor, color=own["color"], lw=0.8, ls=":")
+
+
+def _ladder_panel(found: "Tradeoff") -> Panel:
+    """Whole errors of the conductance at a load against time, model by model; their parts as thin lines."""
+    model = found.ladder[0].model
+    known = not np.isnan(model)
+
+    def paint(axis: Any) -> None:
+        if known:
+            axis.axhline(model, color=style.LEVEL, lw=1, label="error of the model")
+        for name, group in groupby(found.ladder, lambda rung: rung.name):
+            rungs, own = [*group], _RULES[name]
+            time, whole = [r.seconds for r in rungs], [r.whole if known else r.drawn for r in rungs]
+            axis.plot(time, whole, **own, ms=5, ls="-" * (len(rungs) > 1), label=name)
+            if len(rungs) == 1:
+                continue
+            if known:
+                axis.plot(time, [r.drawn for r in rungs], color=own["color"], lw=0.8, ls=":")
+            for r, *at in zip(rungs, time, whole, strict=True):
+                text = f"{r.n_surfaces:g}"
+                axis.annotate(text, at, (0, 5), textcoords="offset points", fontsize=7, ha="center")
+
+    title = "conductance at its load, by numbers of surfaces or maps; dotted: without the model"
+    whole_error = "whole error (95 % bound)"
+    return Panel(title, _TIME, whole_error, scales=("log", "log"), paint=paint, wide=True)

@@ -136,10 +136,10 @@ class Table:
                 shown[-1][k] += "" if np.isnan(x) else f"{column.between}{cell}"
         return shown
 
-    def text(self) -> str:
-        """Plain text: texts are aligned left, numbers right."""
+    def text(self, whole: bool = False) -> str:
+        """Plain text: texts are aligned left, numbers right; long facts are cut unless asked for `whole`."""
         lines = [one_line(self.title)] if self.title else []
-        lines += listed((name, brief(text)) for name, text in self.facts)
+        lines += listed((name, one_line(text) if whole else brief(text)) for name, text in self.facts)
         cells = self.cells()
         widths = [max(map(len, column)) for column in cells]
         values = [column.values for column in self.columns if not column.between]

@@ -112,6 +112,10 @@ class Answers:
     def _by_law(self, scene: Scene) -> float:
         return specimen_moments(scene.theory, "load", self._load(scene), ["conductance"]).mean["conductance"]
 
+    def _by_theory(self, scene: Scene) -> float:
+        h = scene.theory.separation_at("load", self._load(scene))
+        return float(scene.theory.mean("conductance", h))
+
     def _at_load(self, value: float) -> Errors:
         """Error of a conductance; where the mean over specimens is not known, theory's by its order 1/N."""
         known = self.known.get("conductance")
@@ -137,12 +141,9 @@ class Answers:
         def law(scene: Scene) -> Any:
             return scene.theory.distribution(self.q, scene.separations[0])
 
-        def theory_at_load(s: Scene) -> float:
-            return float(s.theory.mean("conductance", s.theory.separation_at("load", self._load(s))))
-
         yield task("theory", "mean", lambda s: s.theory.mean(self.q, s.separations[0]))
         yield task("theory", "std", lambda s: s.theory.std(self.q, s.separations[0]))
-        yield Task("theory", 0, theory_at_load, self._at_load)
+        yield Task("theory", 0, self._by_theory, self._at_load)
         if "conductance" in self.known and self.scene.touching < _MOST_LISTED:
             yield task("exact law", "conductance", self._by_law)
         if self.at.size:

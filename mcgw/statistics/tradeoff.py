@@ -1,35 +1,58 @@
 """Error against time of one scene on this machine: which answer, how exact, at what cost.
 
-Beside the conductance (C rho, or the stiffness) at a load stands the measured error of the model against
-elasticity, beyond which more surfaces do not help.
+The ladder of models, from one formula to boundary elements, is of the conductance (C rho, or the stiffness)
+at a given load: its measured error against elasticity is in the error budget of a solution, and
+`mcgw.elastic` gives it for surfaces with a spectrum.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields
 from itertools import groupby
-from math import ceil, isnan, log10, nan, sqrt
+from math import hypot, isnan
 from operator import attrgetter
 from time import monotonic
 from typing import Any
 from warnings import catch_warnings, simplefilter
 
+import numpy as np
+
 from analytic import MeasuredHeights, MeasuredRadii
-from mcgw.ensemble.simulation import MOST_SURFACES, in_words
-from mcgw.formats.table import Column, Drawn, Table
+from mcgw.ensemble.simulation import in_words
+from mcgw.errors import RunError
+from mcgw.formats.table import Column, Shown, Table
 from mcgw.machine.progress import Progress, told
+from mcgw.machine.terminal import plotted
 from mcgw.scene.kinds import argument, check_object
 from mcgw.scene.scene import Scene
 from mcgw.statistics.measured_ways import REPEATS, Answers, Point, moved, prices, sized
-from mcgw.statistics.ways import TARGETS, WANTS, Advice, Way, of_one, sampled_ways, surfaces_for
+from mcgw.statistics.ways import SOLVE, TARGETS, WANTS, Advice, Way, advise, of_one, sampled_ways
 from mcgw.validity.model_error import percent
 
-_FASTER = 1.5  # a way must be so much faster than one named before it
+SECONDS = 60.0
 _EXACT = 1e-12  # error of values that are right to the last digits
-_ENOUGH = 1.05  # times the error of the model, together with that of surfaces: more are not worth it
+_PIXELS = 0.02  # error of boundary elements on the maps of `mcgw.elastic`: see `mcgw.elasticity.sources`
+_ENOUGH = 1.05  # times the error of the model: more surfaces are not worth it
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One model with so many surfaces or maps; errors are relative 95 % bounds, nan where not known."""
+
+    name: str
+    n_surfaces: int
+    seconds: float
+    drawn: float
+    model: float
+
+    @property
+    def whole(self) -> float:
+        """Root of the sum of squares, as in an error budget."""
+        return hypot(self.drawn, self.model)
 
 
 @dataclass(frozen=True, repr=False)
-class Tradeoff(Drawn):
+class Tradeoff(Shown):
     """Result of the study.
 
     Parameters
@@ -42,8 +65,8 @@ class Tradeoff(Drawn):
         What was measured.
     ways : tuple of Way
         Prices of all ways to all answers.
-    model : float
-        Measured error of the model against elasticity, of the conductance at its load; nan if not known.
+    ladder : tuple of Rung
+        Whole errors, of surfaces and of the model, from one formula to boundary elements.
     worth : str
         Where more surfaces stop to help.
     seconds : float
@@ -54,31 +77,59 @@ class Tradeoff(Drawn):
     load: float
     points: tuple[Point, ...]
     ways: tuple[Way, ...]
-    model: float
+    ladder: tuple[Rung, ...]
     worth: str
     seconds: float
 
     def advice(self, want: str, target: float) -> Advice:
         """Choose the cheapest way to one of `ways.WANTS` within a relative error, a 95 % bound."""
-        best = Advice(want, target, None, 0, nan)
-        for way in (way for way in self.ways if way.want == want and way.floor <= target):
-            n = surfaces_for(self.scene, want, target - way.floor) if way.draws else 0
-            seconds = way.seconds(n)
-            if n <= MOST_SURFACES and (best.way is None or seconds * _FASTER < best.seconds):
-                best = Advice(want, target, way, int(n), seconds)
-        return best
+        return advise(want, target, self.ways, self.scene)
 
     def words(self, want: str) -> str:
         """Name of an answer."""
+        return WANTS[want].format(self.scene.quantities[0])
+
+    def plot(self, ax: Any = None, *, want: str = "mean") -> Any:
+        """Draw error against time of one of the answers.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Axes to draw on; default: new ones.
+        want : str, optional
+            "mean", "std", "quantile", "distribution", "conductance" or "values".
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            With labels and a legend.
+        """
         if want not in WANTS:
             raise ValueError(f"want = {want!r}: give one of {', '.join(WANTS)}")
-        return WANTS[want].format(self.scene.quantities[0])
+        return plotted(self, ax, want=want)
+
+    @property
+    def sentence(self) -> str:
+        """What to do for the mean and the quantile, in one sentence."""
+        parts = []
+        for want in ("mean", "quantile"):
+            found = self.advice(want, 1e-3)
+            if found.way is None:
+                parts.append(f"the {self.words(want)} is out of reach")
+            elif found.way.draws:
+                n = f"{found.n_surfaces} surfaces by {found.way.name}, {in_words(found.seconds)}"
+                parts.append(f"the {self.words(want)} to 0.1 % takes {n}")
+            else:
+                parts.append(f"the {self.words(want)} needs no surfaces: {in_words(found.seconds)}")
+        text = "; ".join(parts)
+        return f"{text[0].upper()}{text[1:]}."
 
     def sheet(self, targets: Sequence[float] = (1e-2,)) -> Table:
         """Return what to run for each answer; targets with one and the same way in one row."""
         scene = self.scene
         facts = [
             ("at", f"d/sigma = {scene.separations[0]:g}; an error is a 95 % bound, 1.96 standard errors"),
+            ("do", self.sentence),
             ("model", self.worth),
         ]
         table = self._rows(targets, ("want", "way", "n_surfaces"))
@@ -116,6 +167,7 @@ class Tradeoff(Drawn):
 def tradeoff(
     scene: Scene,
     *,
+    separation: float | None = None,
     seconds: float | str | None = None,
     progress: Progress = None,
     **changes: Any,
@@ -125,7 +177,9 @@ def tradeoff(
     Parameters
     ----------
     scene : Scene
-        What to simulate; its first quantity is studied, at the middle one of its separations.
+        What to simulate; its first quantity is studied.
+    separation : float, optional
+        Where, d/sigma; default: the middle one of the scene's.
     seconds : float or str, optional
         Time of the study, s or text such as "5 min", default: 60. Sizes are chosen for it; 16 repeats of the
         smallest are made even if that takes longer.
@@ -154,7 +208,7 @@ def tradeoff(
     >>> study.advice("mean", 1e-3).way.name
     'theory'
     """
-    limit = argument("seconds", 60.0 if seconds is None else seconds, "s")
+    limit = argument("seconds", SECONDS if seconds is None else seconds, "s")
     started = monotonic()
     check_object("tradeoff", scene, Scene)
     whole = scene.replace(**changes)
@@ -162,7 +216,7 @@ def tradeoff(
         raise ValueError("summits: listed summits are summed or drawn, and have no other method")
     if isinstance(whole.heights, MeasuredHeights):
         raise ValueError("heights: measured heights are summed exactly; no answer is traded off")
-    h = sorted(whole.separations)[(len(whole.separations) - 1) // 2]
+    h = sorted(whole.separations)[(len(whole.separations) - 1) // 2] if separation is None else separation
     scene = whole.replace(
         separations=(float(h),), quantities=whole.quantities[:1], keep="sums",
         interaction=None, rel_err=None, max_seconds=None,
@@ -183,21 +237,50 @@ def tradeoff(
         points = tuple(point for task in tasks for point in task.points())
         ways = tuple(prices(scene, points, names))
     known = whole.validity([h])
-    model = float(known.error["stiffness"][0])
-    theory = next(way for way in ways if (way.name, way.want) == ("theory", "conductance"))
-    said = worth(scene, theory, model, known.unknown or "not measured")
-    return Tradeoff(scene, answers.load, points, ways, model, said, monotonic() - started)
+    ladder = tuple(ladder_of(whole, scene, answers.load, ways, float(known.error["stiffness"][0])))
+    said = worth(ladder, known.unknown or "not measured")
+    return Tradeoff(scene, answers.load, points, ways, ladder, said, monotonic() - started)
 
 
-def worth(scene: Scene, theory: Way, model: float, unknown: str) -> str:
-    """Say where more surfaces stop to help the conductance, or why the error of the model is not known.
-
-    Of a scene of one separation, where the model is so far off, and its conductance by theory.
-    """
-    if isnan(model):
+def worth(ladder: Sequence[Rung], unknown: str) -> str:
+    """Say where more surfaces stop to help, or why the error of the model is not known."""
+    formula = ladder[0]
+    if isnan(formula.model):
         return f"The error of the model is not known here: {unknown}."
-    said, enough = f"The model is off by {percent(model)}", model * sqrt(_ENOUGH**2 - 1)
-    if theory.floor <= enough:
-        return f"{said}; theory, {in_words(theory.seconds(0))}, is as good as any number of surfaces."
-    decades = ceil(2 * log10(of_one(scene, "conductance") / enough))
-    return f"{said}; more than {10**decades} surfaces do not help."
+    parts = [f"The model is off by {percent(formula.model)}"]
+    enough = [r for r in ladder if r.name == "surfaces" and r.whole <= _ENOUGH * formula.model]
+    if formula.whole <= _ENOUGH * formula.model:
+        parts.append(f"theory, {in_words(formula.seconds)}, is as good as any number of surfaces")
+    elif enough:
+        parts.append(f"more than {enough[0].n_surfaces} surfaces do not help")
+    dear = [r for r in ladder if r.name == "boundary elements" and r.whole < formula.whole]
+    if dear:
+        parts.append(f"`mcgw elastic` gets {percent(dear[-1].whole)} in {in_words(dear[-1].seconds)}")
+    return f"{'; '.join(parts)}."
+
+
+def ladder_of(scene: Scene, alone: Scene, load: float, ways: Sequence[Way], model: float) -> Iterator[Rung]:
+    """Yield the rungs of a scene whose model is so far off; `alone`: its asperities at the separation."""
+    by = {way.name: way for way in ways if way.want == "conductance"}
+    theory = by["theory"]
+    yield Rung("formula", 0, theory.seconds(0), theory.floor, model)
+    for n in (2, 10, 100, 1000, 10_000, 100_000) if SOLVE in by else ():
+        yield Rung("surfaces", n, by[SOLVE].seconds(n), of_one(alone, "conductance") / n**0.5, model)
+    with suppress(ValueError, RunError):  # without a spectrum, or Tamaas, the ladder ends here
+        yield from _of_maps(scene, load / scene.surface.nominal_area)
+
+
+def _of_maps(scene: Scene, pressure: float) -> Iterator[Rung]:
+    """Boundary elements: what means of `mcgw.elastic` within some errors take, by a few maps."""
+    from mcgw.elasticity.levels import LEVELS  # for scenes with a spectrum alone
+    from mcgw.elasticity.multilevel import design
+    from mcgw.elasticity.solves import Solves
+    from mcgw.elasticity.sources import maps_of
+
+    solves = Solves(maps_of(scene), {"pressure": pressure}, scene.surface.E_star, 1, ["conductance"])
+    rows = [solves.at(LEVELS, number) for number in range(4)]  # maps on which levels are compared
+    values, seconds = (np.array(part) for part in zip(*rows, strict=True))
+    solve = float(np.median(seconds[:, -1]))
+    for target in (0.1, 0.03, 0.01):
+        planned = design(values, [level.cost for level in LEVELS], target)
+        yield Rung("boundary elements", planned.maps[-1], planned.cost * solve, target, _PIXELS)

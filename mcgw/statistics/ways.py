@@ -4,8 +4,9 @@ An error is a 95 % bound: 1.96 standard errors of a mean, a standard deviation o
 and for a whole distribution the largest difference of a probability, which Kolmogorov's law bounds.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil, inf, sqrt
+from math import ceil, inf, nan, sqrt
 
 from scipy.special import ndtri
 
@@ -24,20 +25,39 @@ WANTS = {
 }  # fmt: skip
 TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 SOLVE = "solve"  # surfaces drawn one by one, each at its own separation
+_GIVES = {
+    "theory": ("mean", "std", "conductance"), "exact law": ("quantile", "distribution", "conductance"),
+    SOLVE: ("conductance",),
+}  # fmt: skip
+_FASTER = 1.5  # a way must be so much faster than one named before it
 _BOUND = float(ndtri((1 + CONFIDENCE) / 2))
 _FEWEST = {"std": 30, "quantile": 2000, "distribution": 1}  # 20 of 2000 lie beyond the quantile
 
 
 @dataclass(frozen=True)
 class Way:
-    """One way to one answer."""
+    """One way to one answer.
 
-    name: str  # "theory", "exact law", "solve", or a sampler
-    want: str  # one of `WANTS`
-    floor: float  # error that more surfaces do not reduce
-    set_up: float  # CPU seconds before the first surface
-    each: float  # CPU seconds of each surface; 0 where none is drawn
-    measured: bool = True  # whether it was timed; else its price is arithmetic: `mcgw.sampling.expected`
+    Parameters
+    ----------
+    name : str
+        "theory", "exact law", "solve", or a sampler.
+    want : str
+        One of `WANTS`.
+    floor : float
+        Error that more surfaces do not reduce.
+    set_up, each : float
+        CPU seconds: before the first surface, and of each; `each` is 0 where none is drawn.
+    measured : bool
+        Whether it was timed; otherwise its price is arithmetic (`mcgw.sampling.expected`).
+    """
+
+    name: str
+    want: str
+    floor: float
+    set_up: float
+    each: float
+    measured: bool = True
 
     @property
     def draws(self) -> bool:
@@ -69,11 +89,14 @@ def sampled_ways(scene: Scene) -> list[str]:
 
 
 def wants_of(name: str) -> tuple[str, ...]:
-    """Return what surfaces drawn in a way give: no law of them by a sampler whose laws are off."""
-    if name == SOLVE:
-        return ("conductance",)
-    laws = ("quantile", "distribution", "values") if promise_of(name).one_by_one else ()
-    return ("mean", "std", *laws)
+    """Return what a way can give: no law of surfaces by theory, nor by a sampler whose laws are off."""
+    if name in _GIVES:
+        return _GIVES[name]
+    return (
+        ("mean", "std", "quantile", "distribution", "values")
+        if promise_of(name).one_by_one
+        else ("mean", "std")
+    )
 
 
 @kept(64)
@@ -134,3 +157,14 @@ class Advice:
         law = f'distribution("{q}", {h:g})'
         found = {"quantile": f"{law}.ppf({PROBABILITY})", "distribution": law}
         return "scene.theory." + found.get(self.want, f'{self.want}("{q}", {h:g})')
+
+
+def advise(want: str, target: float, ways: Sequence[Way], scene: Scene) -> Advice:
+    """Choose the cheapest way; of those that cost about the same, the one named first."""
+    best = Advice(want, target, None, 0, nan)
+    for way in (way for way in ways if way.want == want and way.floor <= target):
+        n = surfaces_for(scene, want, target - way.floor) if way.draws else 0
+        seconds = way.seconds(n)
+        if n <= MOST_SURFACES and (best.way is None or seconds * _FASTER < best.seconds):
+            best = Advice(want, target, way, int(n), seconds)
+    return best

@@ -1,6 +1,6 @@
 """A study of speed and accuracy by hand, for tables and figures."""
 
-from oracles.inside import Point, Tradeoff, Way
+from oracles.inside import Point, Rung, Tradeoff, Way, worth
 
 
 def made_up(scene):
@@ -13,6 +13,9 @@ def made_up(scene):
     ways = (
         Way("theory", "mean", 1e-13, 5e-4, 0.0), Way("tail", "mean", 0.0, 1e-3, 3e-6),
         Way("cells", "values", 1e-3, 0.25, 0.01), Way("exact law", "quantile", 1e-6, 0.01, 0.0),
-        Way("theory", "conductance", 1e-3, 1e-3, 0.0),
     )  # fmt: skip
-    return Tradeoff(scene, 2.0, points, ways, 0.03, "The model is off by 3 %.", 12.4)
+    ladder = (
+        Rung("formula", 0, 1e-3, 0.0, 0.03), Rung("surfaces", 10, 0.1, 0.04, 0.03),
+        Rung("surfaces", 1000, 9.0, 0.004, 0.03),
+    )  # fmt: skip
+    return Tradeoff(scene, 2.0, points, ways, ladder, worth(ladder, ""), 12.4)

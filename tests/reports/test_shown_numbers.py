@@ -113,7 +113,7 @@ def test_tradeoff(make_scene, tmp_path, capsys, monkeypatch):
     (tmp_path / "s.toml").write_text(mcgw.scene_text(study.scene))
     monkeypatch.setattr("mcgw.statistics.tradeoff.tradeoff", lambda scene, *, seconds: study)
     said = out_of(["tradeoff", tmp_path / "s.toml", "-o", tmp_path, "-v"], capsys)
-    assert "  model  The model is off by 3 %." in said
+    assert "The mean load needs no surfaces: 0.5 ms" in said
     assert f"{tmp_path / 's-tradeoff.csv'}: what to run for each error (12 s)" in said
     rows = rows_of(tmp_path / "s-tradeoff.csv")
     assert [row["way"] for row in rows[:6]] == ["theory"] * 6
