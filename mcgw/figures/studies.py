@@ -31,7 +31,7 @@ _FLOOR, _LEAST = 1e-14, 1e-12  # errors and probabilities that are drawn
 _TWO = 1.96  # standard errors that 95 of 100 keep
 _TIME, _BOUND = "CPU time (s)", "error (95 % bound)"
 _RULES: dict[str, dict[str, Any]] = {
-    "theory": {"color": style.THEORY, "marker": "*"},
+    **{key: {"color": style.THEORY, "marker": "*"} for key in ("theory", "formula")},
     "exact law": {"color": style.HOMOGENEOUS, "marker": "P"},
     "solve": {"color": look("tail")["color"], "marker": "o"},
     "surfaces": {"color": look("tail")["color"], "marker": "s"},
