@@ -17,7 +17,7 @@ import numpy as np
 from cycler import cycler
 from matplotlib.figure import Figure
 
-from analytic import Hertz
+from analytic import Exponential, Grading, Hertz, Homogeneous, PiecewiseSeries
 from analytic.arrays import Array
 from mcgw.formats.files import whole_file
 from mcgw.formats.law_text import law_text
@@ -176,10 +176,22 @@ def shown_title(scene: Scene, otherwise: str) -> str:
     return one_line(scene.title).replace("$", r"\$") or otherwise
 
 
+def grading_label(grading: Grading) -> str:
+    """Return a few words for a caption."""
+    match grading:
+        case Homogeneous():
+            return "homogeneous"
+        case Exponential():
+            return f"exponential grading, γ = {grading.gamma:g}"
+        case PiecewiseSeries(name=name) if name:
+            return f"grading {one_line(name).replace('$', '')}"
+    return f"{type(grading).__name__.lower()} grading"
+
+
 def contact_label(scene: Scene) -> str:
     """Grading and contact law for a caption; Hertz's law is not named."""
     law = "" if type(scene.law) is Hertz else f", {short(law_text(scene.law))}"
-    return f"{short(law_text(scene.grading))}{law}"
+    return f"{grading_label(scene.grading)}{law}"
 
 
 def short(law: str) -> str:

@@ -18,8 +18,7 @@ from mcgw.ensemble.solution import solutions
 from mcgw.ensemble.solved import Solution
 from mcgw.figures.panels import FigureData, Panel, Series, draw
 from mcgw.figures.studies import quantity_panel, spread_panel
-from mcgw.figures.style import SEEN, STYLE, short
-from mcgw.formats.law_text import law_text
+from mcgw.figures.style import SEEN, STYLE, grading_label
 from mcgw.formats.table import Column, Table, evenly, typeset
 from mcgw.machine.progress import told
 from mcgw.machine.terminal import one_line, plain_text
@@ -74,7 +73,7 @@ def report_html(
     return page.get_template("report.html.j2").render(
         title=one_line(scene.title) or "Ensemble of rough surfaces",
         ensemble=ensemble,
-        grading=short(law_text(scene.grading)),
+        grading=grading_label(scene.grading),
         shown=how_many(ensemble),
         comparison=comparison,
         at_pressure=at_pressure,

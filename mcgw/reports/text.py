@@ -226,9 +226,7 @@ def summary(result: "Ensemble | Sweep", attributes: dict[str, Any], full: bool =
     ]
     lines = [result.sheet().text(whole=True), *listed(facts)]
     if not full:
-        return "\n".join(
-            [*lines, "standard deviations, more separations, what was measured: add -v"]
-        )
+        return "\n".join([*lines, "standard deviations, more separations, what was measured: add -v"])
     lines += [f"  {line}" for line in scene.validity().lines]
     for name in scene.answers:
         lines += ["", statistics_table(result, name).only(*_SHOWN).rows().text()]
