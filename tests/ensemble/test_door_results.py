@@ -76,9 +76,6 @@ def test_columns_have_names_that_programs_may_rely_on(results, sweep):
         assert [column.name.replace(" ", "_") for column in table.columns] == names.split()
 
 
-# --- quantities --------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(("name", "of"), [("pressure", "load"), ("area_fraction", "area")])
 def test_pressure_and_area_fraction_are_load_and_area_per_nominal_area(ensemble, name, of):
     e = ensemble
@@ -91,9 +88,6 @@ def test_pressure_and_area_fraction_are_load_and_area_per_nominal_area(ensemble,
     np.testing.assert_allclose(theory.separation_at(name, theory.mean(name, H)), H, rtol=1e-10, atol=1e-10)
     matrix = theory.covariance([name, of], H)
     np.testing.assert_allclose(matrix[0, :, 1], matrix[1, :, 1] / area, rtol=1e-12)
-
-
-# --- tables ------------------------------------------------------------------------------------------------
 
 
 def test_xarray_is_as_the_file_is_and_a_dataframe_has_a_row_for_each_surface_and_separation(
@@ -127,9 +121,6 @@ def test_a_package_that_is_not_installed_is_named(ensemble, missing, method, pac
         getattr(ensemble, method)()
 
 
-# --- short looks -------------------------------------------------------------------------------------------
-
-
 def test_everything_is_shown_in_a_dozen_lines_and_as_a_table(results, scene):
     for name, result in {**results, "scene": scene}.items():
         lines = repr(result).splitlines()
@@ -150,9 +141,6 @@ def test_a_title_is_no_tag_and_no_command(scene, ensemble):
     assert not [tag for tag in ("<a>", "<c>", "<d>", "<e>") if tag in shown]
     assert shown.count("<b>") == 1  # our own
     assert (brief("x" * 88), brief("x" * 500)) == ("x" * 88, "x" * 85 + "...")
-
-
-# --- pictures ----------------------------------------------------------------------------------------------
 
 
 @pytest.fixture(autouse=True)
@@ -186,9 +174,6 @@ def test_what_is_drawn_is_what_there_is(ensemble, results):
         results["study"].plot(want="median")
     with pytest.raises(KeyError, match="torque"):
         ensemble.plot(quantity="torque")
-
-
-# --- questions ---------------------------------------------------------------------------------------------
 
 
 def test_one_load_by_four_names(scene):

@@ -73,8 +73,6 @@ def d0_of(path):
     return float(re.search(r"d0 = (\S+) ", path.read_text())[1])
 
 
-# --- forms ----------------------------------------------------------------------------------------------
-
 KEYWORDS = {
     ("calculix", "pressure-gap"): "*SURFACEBEHAVIOR,PRESSURE-OVERCLOSURE=TABULAR",
     ("calculix", "conductance-pressure"): "*GAPCONDUCTANCE",
@@ -135,9 +133,6 @@ def test_a_curve_is_written_as_the_program_reads_it(scene, program, table, units
         assert read_inp(path)[0] == KEYWORDS[program, table]
     assert ("INPUT=f.x" in text) == (program in ("calculix", "abaqus"))
     assert ("MPa" in re.search("units: (.+)", text)[1]) == (units == "mm-N-s" and "pressure" in table)
-
-
-# --- numbers --------------------------------------------------------------------------------------------
 
 
 def test_quantiles_have_names_of_their_own():
@@ -268,8 +263,6 @@ def test_names_that_a_program_cannot_be_told_are_refused(make_scene, name, tmp_p
     assert len(capsys.readouterr().err.splitlines()) == 1
     assert not list(tmp_path.iterdir())
 
-
-# --- as JSON ----------------------------------------------------------------------------------------------
 
 JOINT = mcgw.Joint(conductivities=(150.0, 16.0))
 JOINED = mcgw.Scene(SURFACE, separations=[0.0, 1.5], n_surfaces=400, seed=4, joint=JOINT)

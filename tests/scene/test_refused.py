@@ -108,9 +108,7 @@ TEXTS = [
     (lambda: read(contact={"separations": "[" * 5000 + "]" * 5000}), "this is not TOML"),
 ]  # fmt: skip
 FAR = [  # beyond numbers, memory, disk and folders
-    (lambda: mcgw.run(scene(n_surfaces=10**12, n_asperities=10**8), "e.h5"),
-     r"n_surfaces \* n_asperities = 1e\+20 is more than 2\^63 - 1"),
-    (lambda: mcgw.run(scene(n_surfaces=10**12, separations=3.0), "e.h5"),
+    (lambda: mcgw.run(scene(n_surfaces=10**12, n_asperities=10**8, separations=3.0), "e.h5"),
      r"needs up to .* GiB more on the disk while made and .* are free"),
     (lambda: scene(grading=analytic.Exponential(1e300)), r"grading.gamma = 1e\+300: .* overflow"),
     *((lambda name=name: mcgw.run(SCENE, name), words) for name, words in (
