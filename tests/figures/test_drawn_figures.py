@@ -97,9 +97,6 @@ def test_there_are_no_residuals_of_points_whose_errors_are_not_known():
     assert style.line("γ = 1", 3) == {"label": "γ = 1", "color": "#000000", "linestyle": "-"}
 
 
-# --- studies --------------------------------------------------------------------------------------------
-
-
 @pytest.fixture
 def converged(make_scene):
     checks = (("first", "seen so", 0.5), ("second", "seen else", 1e-5), ("third", "x", 0.0))
