@@ -110,6 +110,10 @@ class Law:
         q = np.asarray(q, dtype=np.float64)
         return self.ppf(1 - np.where(q > 0, np.maximum(q, _EPSILON), q))
 
+    def median(self) -> float:
+        """Return the median over surfaces: half of them lie below it."""
+        return float(self.ppf(0.5))
+
     def interval(self, confidence: ArrayLike) -> tuple[Array, Array]:
         """Return the ends of the range with equal shares of the surfaces below and above."""
         out = (1 - np.asarray(confidence, dtype=np.float64)) / 2
