@@ -107,8 +107,7 @@ class Law:
 
     def isf(self, q: ArrayLike) -> Array:
         """Return the smallest value y with P(Y > y) <= q; nan beyond what lattices resolve."""
-        q = np.asarray(q, dtype=np.float64)
-        return self.ppf(1 - np.where(q > 0, np.maximum(q, _EPSILON), q))
+        return self.ppf(1 - np.where(np.asarray(q) > 0, np.maximum(q, _EPSILON), q))
 
     def median(self) -> float:
         """Return the median over surfaces: half of them lie below it."""
