@@ -50,8 +50,7 @@ are merged at the end and then removed. What each mechanism is for:
 
 ``h5_writing``   the one writer of files, shards and records, and their checksums; HDF5 sees no full disk
 ``h5_reading``   the one reader: plain tables of numbers alone, looked at on every opening
-``run_plan``     what is drawn into a file, in which blocks, and the folder where these lie: a killed run
-                 loses at most the blocks in hand
+``run_plan``     what is drawn into a file, in which blocks, and where these lie: a kill loses those in hand
 ``identity``     which scenes, samplers and versions those are; and who made a file
 ``lock``         two processes never write one file; shared by jobs that each make a share
 ``ensembles``    files and runs in progress opened, and verified
