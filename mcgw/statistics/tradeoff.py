@@ -20,9 +20,8 @@ import numpy as np
 from analytic import MeasuredHeights, MeasuredRadii
 from mcgw.ensemble.simulation import in_words
 from mcgw.errors import RunError
-from mcgw.formats.table import Column, Shown, Table
+from mcgw.formats.table import Column, Drawn, Table
 from mcgw.machine.progress import Progress, told
-from mcgw.machine.terminal import plotted
 from mcgw.scene.kinds import argument, check_object
 from mcgw.scene.scene import Scene
 from mcgw.statistics.measured_ways import REPEATS, Answers, Point, moved, prices, sized
@@ -52,7 +51,7 @@ class Rung:
 
 
 @dataclass(frozen=True, repr=False)
-class Tradeoff(Shown):
+class Tradeoff(Drawn):
     """Result of the study.
 
     Parameters
@@ -87,26 +86,9 @@ class Tradeoff(Shown):
 
     def words(self, want: str) -> str:
         """Name of an answer."""
-        return WANTS[want].format(self.scene.quantities[0])
-
-    def plot(self, ax: Any = None, *, want: str = "mean") -> Any:
-        """Draw error against time of one of the answers.
-
-        Parameters
-        ----------
-        ax : matplotlib Axes, optional
-            Axes to draw on; default: new ones.
-        want : str, optional
-            "mean", "std", "quantile", "distribution", "conductance" or "values".
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            With labels and a legend.
-        """
         if want not in WANTS:
             raise ValueError(f"want = {want!r}: give one of {', '.join(WANTS)}")
-        return plotted(self, ax, want=want)
+        return WANTS[want].format(self.scene.quantities[0])
 
     @property
     def sentence(self) -> str:
