@@ -184,9 +184,9 @@ class Answer:
     bodies: float = 0.0
     at_plane: Callable[[Array, int], Array] | None = None
 
-    def mean(self, model: Any, h: Array) -> Array:
-        """Mean over surfaces, to second order."""
-        y, _, (bend_spots, bend_load) = self.at_means(model, h)
+    def mean(self, model: Any, h: Array, found: tuple[Array, Array, Array] | None = None) -> Array:
+        """Mean over surfaces, to second order; `found` if there is what `at_means` gives."""
+        y, _, (bend_spots, bend_load) = found or self.at_means(model, h)
         if self.series or self.bodies:
             y = y + bend_spots * model.cumulants(self.spots, h).variance / 2
         if self.sunk and self.at_plane is not _itself:

@@ -215,9 +215,9 @@ class Model(MeanModel):
         columns, alone = list(dict.fromkeys(named)), self.alone
         rates, means = np.zeros((len(columns), len(answers), h.size)), []
         for k, (q, answer) in enumerate(zip(several, answers, strict=True)):
-            unit = q.scale(self.surface)
-            means.append(self.mean(q.name, h) / (self.number * unit))
-            for term, rate in zip((answer.spots, answer.load), answer.at_means(alone, h)[1], strict=True):
+            unit, found = q.scale(self.surface), answer.at_means(alone, h)
+            means.append(answer.mean(alone, h, found) / (self.number * unit))
+            for term, rate in zip((answer.spots, answer.load), found[1], strict=True):
                 if term in columns:
                     rates[columns.index(term), k] += rate * quantity_of(term).scale(self.surface) / unit
         axes = np.einsum("sqk,kl->skql", rates, np.eye(h.size)).reshape(len(columns) * h.size, -1)

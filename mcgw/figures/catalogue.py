@@ -9,15 +9,7 @@ import numpy as np
 
 from analytic import Hertz, quantity_of
 from mcgw.ensemble.simulation import simulate
-from mcgw.figures.compared import (
-    POWERS,
-    SCENE,
-    Compared,
-    Mean,
-    Modulus,
-    over_separation,
-    ratio,
-)
+from mcgw.figures.compared import POWERS, SCENE, Compared, Mean, Modulus, over_separation, ratio
 from mcgw.figures.panels import GAMMA, PRESSURE, SEPARATION, FigureData, Panel, Series
 from mcgw.figures.studies import spread, spread_panel
 from mcgw.figures.style import power_of_ten, prefixed

@@ -25,12 +25,7 @@ from mcgw.validity.lookup import moments_of_nayak
 if TYPE_CHECKING:
     from mcgw.sweeps.sweep import Sweep
 
-_AT_LOADS = (
-    "contact law",
-    "bodies",
-    "interaction",
-    "joint",
-)  # what of the contacts counts at a given load
+_AT_LOADS = ("contact law", "bodies", "interaction", "joint")  # what of the contacts counts at a given load
 _GAP = {
     "mean_gap": "mean gap between the mean planes of the surfaces",
     "gap_to_summits": "gap to the mean plane of the summits",
