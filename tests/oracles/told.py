@@ -219,7 +219,8 @@ def apart(old, new):
 def near(a, b):
     """Whether lines say the same but for the last digits of their numbers.
 
-    What is less than 1e-14 of the numbers before and after it is rounding, another one on another processor.
+    What is less than 1e-14 of the numbers before and after it is rounding, another one on another processor;
+    a number of ten digits is rounded, with a point or without.
     """
     if _NUMBER.sub("#", a) != _NUMBER.sub("#", b):
         return False
@@ -228,7 +229,7 @@ def near(a, b):
     noise = [1e-14 * min(pair) for pair in zip(sizes, sizes[2:], strict=False)]
     return all(
         x == y
-        or ("." in x + y and abs(float(x) - float(y)) <= max(1.001 * step(x), 1e-7 * abs(float(x)), least))
+        or (("." in x + y or len(x) >= 10) and abs(float(x) - float(y)) <= max(1.001 * step(x), 1e-7 * abs(float(x)), least))
         for x, y, least in zip(old, new, noise, strict=True)
     )
 
