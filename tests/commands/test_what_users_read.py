@@ -64,8 +64,8 @@ CLOCK = re.compile(
     r"\d[\d.,e+-]*(?: ?(?:ms|s|min|h|[kMG]i?B|bytes)\b| surfaces (?:a|per) second| times as fast)"
 )
 OTHER = re.compile(
-    r"(?<![.\d])(?=\d*[a-f])[0-9a-f]{12,64}\b|(?<=^  (?:with|made) ).*|(?<=time at others: ).*|(?<=mcgw )\d+\.\d[\w.+]*"
-    r"|\d{4}-\d\d-\d\d[T ][\d:.+Z-]*"
+    r"(?<![.\d])(?=\d*[a-f])[0-9a-f]{12,64}\b|(?<=^  (?:with|made) ).*|(?<=time at others: ).*"
+    r"|(?<=mcgw )\d+\.\d[\w.+]*|\d{4}-\d\d-\d\d[T ][\d:.+Z-]*"
 )
 LONG, TABLE = 40, 12  # lines of a text or figures, and of a file of numbers, that stand one by one
 TEXT = {".toml", ".csv", ".inp", ".txt", ".json"}

@@ -229,7 +229,10 @@ def near(a, b):
     noise = [1e-14 * min(pair) for pair in zip(sizes, sizes[2:], strict=False)]
     return all(
         x == y
-        or (("." in x + y or len(x) >= 10) and abs(float(x) - float(y)) <= max(1.001 * step(x), 1e-7 * abs(float(x)), least))
+        or (
+            ("." in x + y or len(x) >= 10)
+            and abs(float(x) - float(y)) <= max(1.001 * step(x), 1e-7 * abs(float(x)), least)
+        )
         for x, y, least in zip(old, new, noise, strict=True)
     )
 
