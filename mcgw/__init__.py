@@ -73,111 +73,25 @@ Errors are a `SceneError` (a wrong argument or scene: one line for each mistake)
 (50, 2)
 """
 
+import ast
 import os
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
-from mcgw.machine.terminal import bind_drawing
-
-if TYPE_CHECKING:
-    from analytic import (
-        ChangEtsionBogy as ChangEtsionBogy,
-        Coated as Coated,
-        Custom as Custom,
-        CustomLaw as CustomLaw,
-        DerjaguinMullerToporov as DerjaguinMullerToporov,
-        Exponential as Exponential,
-        ExponentialHeights as ExponentialHeights,
-        Gaussian as Gaussian,
-        HeightTable as HeightTable,
-        Hertz as Hertz,
-        Homogeneous as Homogeneous,
-        Interaction as Interaction,
-        JacksonGreen as JacksonGreen,
-        JohnsonKendallRoberts as JohnsonKendallRoberts,
-        KogutEtsion as KogutEtsion,
-        Layer as Layer,
-        MeasuredHeights as MeasuredHeights,
-        MeasuredRadii as MeasuredRadii,
-        Nayak as Nayak,
-        PowerLawGraded as PowerLawGraded,
-        RandomCurvature as RandomCurvature,
-        ScipyHeights as ScipyHeights,
-        Table as Table,
-        Weibull as Weibull,
-        ZhaoMaiettaChang as ZhaoMaiettaChang,
-        composite_modulus as composite_modulus,
-    )
-    from mcgw.elasticity.elastic import elastic as elastic
-    from mcgw.ensemble.ensemble import Ensemble as Ensemble
-    from mcgw.ensemble.paired import paired_ratio as paired_ratio
-    from mcgw.ensemble.simulation import simulate as simulate
-    from mcgw.ensemble.solution import solve as solve
-    from mcgw.errors import RunError as RunError, StoreError as StoreError
-    from mcgw.exports.writing import export as export
-    from mcgw.jobs.making import merge as merge
-    from mcgw.jobs.running import run as run, sweep as sweep
-    from mcgw.maps.fitted_scene import fitted_scene as fitted_scene
-    from mcgw.maps.fitting import fit as fit
-    from mcgw.maps.iso import surface_from as surface_from
-    from mcgw.maps.two_bodies import combine as combine
-    from mcgw.sampling.asperities import heights as heights, radii as radii
-    from mcgw.scene.contact import Contact as Contact, Joint as Joint
-    from mcgw.scene.ensemble import Sampling as Sampling
-    from mcgw.scene.laws import Graded as Graded
-    from mcgw.scene.scene import Scene as Scene
-    from mcgw.scene.scene_file import (
-        load_scene as load_scene,
-        scene_from as scene_from,
-        scene_text as scene_text,
-    )
-    from mcgw.scene.section import SceneError as SceneError
-    from mcgw.scene.surface import Body as Body, SpectralSurface as SpectralSurface, Surface as Surface
-    from mcgw.statistics.comparison import compare as compare
-    from mcgw.statistics.convergence import converge as converge
-    from mcgw.statistics.tradeoff import tradeoff as tradeoff
-    from mcgw.store.ensembles import open_ensemble as open_ensemble, open_sweep as open_sweep
-    from mcgw.store.place import save as save
+from mcgw.machine.terminal import drawers
 
 # Threads that wait for others sleep. By default they spin, and a loop of microseconds takes a hundred
 # times as long on a machine that has anything else to do. Read once, when the loops are loaded.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
-# Where names come from. They are imported on first use: compiling and file formats cost a second, for which
-# `mcgw --help` should not wait.
-_HOMES = {
-    "analytic": "ChangEtsionBogy Coated Custom CustomLaw DerjaguinMullerToporov Exponential "
-    "ExponentialHeights Gaussian HeightTable Hertz Homogeneous Interaction JacksonGreen "
-    "JohnsonKendallRoberts KogutEtsion Layer MeasuredHeights MeasuredRadii Nayak PowerLawGraded "
-    "RandomCurvature ScipyHeights Table Weibull ZhaoMaiettaChang composite_modulus",
-    "mcgw.elasticity.elastic": "elastic",
-    "mcgw.ensemble.ensemble": "Ensemble",
-    "mcgw.ensemble.paired": "paired_ratio",
-    "mcgw.ensemble.simulation": "simulate",
-    "mcgw.ensemble.solution": "solve",
-    "mcgw.errors": "RunError StoreError",
-    "mcgw.exports.writing": "export",
-    "mcgw.jobs.making": "merge",
-    "mcgw.jobs.running": "run sweep",
-    "mcgw.maps.fitted_scene": "fitted_scene",
-    "mcgw.maps.fitting": "fit",
-    "mcgw.maps.iso": "surface_from",
-    "mcgw.maps.two_bodies": "combine",
-    "mcgw.sampling.asperities": "heights radii",
-    "mcgw.scene.scene": "Scene",
-    "mcgw.scene.scene_file": "load_scene scene_from scene_text",
-    "mcgw.scene.contact": "Contact Joint",
-    "mcgw.scene.ensemble": "Sampling",
-    "mcgw.scene.laws": "Graded",
-    "mcgw.scene.section": "SceneError",
-    "mcgw.scene.surface": "Body SpectralSurface Surface",
-    "mcgw.statistics.comparison": "compare",
-    "mcgw.statistics.convergence": "converge",
-    "mcgw.statistics.tradeoff": "tradeoff",
-    "mcgw.store.ensembles": "open_ensemble open_sweep",
-    "mcgw.store.place": "save",
+# Names and where they come from: the stub beside this file, which type checkers read, is the only list.
+# They are imported on first use: compiling and file formats cost a second, for which `mcgw --help` should
+# not wait.
+_STUB = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
+_HOME = {
+    name.name: each.module for each in _STUB.body if isinstance(each, ast.ImportFrom) for name in each.names
 }
-_HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
 
 
 def _draw(result: Any, ax: Any, **options: Any) -> Any:
@@ -187,7 +101,7 @@ def _draw(result: Any, ax: Any, **options: Any) -> Any:
     return draw(result, ax, **options)
 
 
-bind_drawing(_draw)
+drawers.append(_draw)
 
 
 def __getattr__(name: str) -> Any:

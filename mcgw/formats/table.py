@@ -14,7 +14,7 @@ import numpy as np
 from analytic.arrays import Ints
 from mcgw.errors import extra
 from mcgw.formats.files import whole_file
-from mcgw.machine.terminal import brief, listed, one_line, plotted
+from mcgw.machine.terminal import brief, drawers, listed, one_line
 
 SEPARATION = "d/sigma"  # over a column of separations
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -232,7 +232,7 @@ class Drawn(Shown):
         """
         for each in given:
             options |= {"quantity": each} if isinstance(each, str) else {"ax": each}
-        return plotted(self, options.pop("ax", ax), **options)
+        return drawers[0](self, options.pop("ax", ax), **options)
 
 
 def stacked(tables: Mapping[str, Table], key: str, words: str = "") -> Table:

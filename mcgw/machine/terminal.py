@@ -1,4 +1,4 @@
-"""Output: text that cannot control a terminal, streams that may be closed or full; and drawings.
+"""Output: text that cannot control a terminal, streams that may be closed or full; and who draws results.
 
 Readers do not affect the work: text that a stream refuses is lost, and its error is kept.
 """
@@ -10,7 +10,9 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout, suppress
 from typing import Any
 
-_bound: dict[str, Callable[..., Any]] = {}
+# Draws a result, as ``draw(result, ax, **options)``: figures lie above the results that they draw, so these
+# cannot import them, and `mcgw` itself puts it here.
+drawers: list[Callable[..., Any]] = []
 _LONGEST = 88  # characters of one fact
 _SHORT = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
@@ -102,16 +104,3 @@ def plain_output() -> Iterator[Plain]:
             finally:
                 output.flush()
                 errors.flush()
-
-
-def bind_drawing(draw: Callable[..., Any]) -> None:
-    """Set the function that draws results: ``draw(result, ax, **options)``."""
-    _bound["draw"] = draw
-
-
-def plotted(result: Any, ax: Any, **options: Any) -> Any:
-    """Draw a result on axes, new ones if `ax` is None, and return them.
-
-    Figures lie above the results that they draw, so these cannot import them: `mcgw` itself binds them.
-    """
-    return _bound["draw"](result, ax, **options)

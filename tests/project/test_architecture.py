@@ -115,7 +115,7 @@ def test_each_way_of_importing_would_be_seen(text):
     (pair,) = going_up({low: parsed(text)})
     assert pair[0] == low
     if pair[1] == high:
-        back = parsed("from mcgw.machine.terminal import plotted")
+        back = parsed("from mcgw.machine.terminal import drawers")
         assert set(around({low: parsed(text), high: back})) == {low, high}
 
 
