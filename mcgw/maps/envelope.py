@@ -87,30 +87,13 @@ def _heights(px: Any, py: Any, least: Any, caps: Any, shape: Any, size: Any, per
 
 
 def envelope(
-    field: Asperities,
-    shape: tuple[int, int],
-    *,
-    width: float | None = None,
-    periodic: bool = False,
+    field: Asperities, shape: tuple[int, int], *, width: float | None = None, periodic: bool = False
 ) -> Topography:
     """Upper envelope of the caps ``z_i - r^2/(2R)`` on a grid of rows and columns, heights in m.
 
-    Parameters
-    ----------
-    field : Asperities
-        One or more asperities.
-    shape : (int, int)
-        Rows and columns of the map.
-    width : float, optional
-        Extent along x of a map with square pixels, whose corner is that of the field, m. Default: the map
-        has the extent of the field.
-    periodic : bool, optional
-        Whether caps reach across the edges of the field.
-
-    Raises
-    ------
-    ValueError
-        If there is no asperity, or no pixel, or more than 2^28, or the map reaches beyond the field.
+    The map has the extent of the field; or a `width` along x in m, with square pixels and the corner of the
+    field. If it is `periodic`, caps reach across the edges of the field. ValueError if there is no asperity,
+    no pixel or too many of them, or the map reaches beyond the field.
     """
     rows, columns = checked_shape(*shape)
     if not field.number:

@@ -33,22 +33,12 @@ _MOST = 10.0
 
 
 class Roughness(NamedTuple):
-    """Roughness parameters of heights (ISO 25178-2 for maps, ISO 21920-2 for profiles).
+    """Roughness parameters of heights (ISO 25178-2 for maps, ISO 21920-2 for profiles)."""
 
-    Parameters
-    ----------
-    a : float
-        Arithmetic mean deviation, Sa or Pa, m.
-    q : float
-        Root mean square deviation, Sq or Pq, m.
-    sk, ku : float
-        Skewness and kurtosis, Ssk and Sku or Psk and Pku.
-    """
-
-    a: float
-    q: float
-    sk: float
-    ku: float
+    a: float  # arithmetic mean deviation, Sa or Pa, m
+    q: float  # root mean square deviation, Sq or Pq, m
+    sk: float  # skewness, Ssk or Psk
+    ku: float  # kurtosis, Sku or Pku
 
     def text(self, kind: str) -> str:
         """Return the parameters in words, named as for a map ("S") or a profile ("P")."""
@@ -66,13 +56,7 @@ def roughness_of(heights: Array) -> Roughness:
 
 @dataclass(frozen=True)
 class Estimate:
-    """Density, radius and spread of the summits by one method.
-
-    Parameters
-    ----------
-    eta, radius, sigma : Uncertain
-        Value, standard error, and both ends of the interval of 95 %: 1/m^2, m, m.
-    """
+    """Density (1/m^2), radius (m) and spread (m) of the summits by one method, each with its error."""
 
     eta: Uncertain
     radius: Uncertain
@@ -189,18 +173,10 @@ def by_caps(counted: Summits, blur: float) -> Array | None:
 
 
 class Visible(NamedTuple):
-    """Of the summits that no taller neighbour hides.
+    """Of the summits that no taller neighbour hides."""
 
-    Parameters
-    ----------
-    share : float
-        Of all summits.
-    mean, std : float
-        Of their reduced heights; 0 if none is visible.
-    """
-
-    share: float
-    mean: float
+    share: float  # of all summits
+    mean: float  # of their reduced heights; 0, and so is std, if none is visible
     std: float
 
 

@@ -120,17 +120,8 @@ def fit_sources(
 ) -> tuple[Fit | ProfileFit, Prepared | None, str]:
     """Fit maps or profiles of one surface; a file is read when its turn comes.
 
-    Returns
-    -------
-    (Fit or ProfileFit, Prepared or None, str)
-        The fit of all, with its cautions about the estimate to `use`; the last map as prepared; and an
-        assumed unit of lengths.
-
-    Raises
-    ------
-    ValueError
-        If some are profiles and some maps, a step is asked for that maps alone have, or one cannot be read
-        or fitted.
+    Returns the fit of all, with its cautions about the estimate to `use`; the last map as prepared; and an
+    assumed unit of lengths.
     """
     names = [x.name if isinstance(x, Path) else f"map {k}" for k, x in enumerate(sources, 1)]
     fits: list[Fit] = []

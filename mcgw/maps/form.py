@@ -57,12 +57,7 @@ def smooth(topography: Topography, cutoff: float) -> Topography:
     """Apply the areal Gaussian filter of ISO 16610-61 and leave off the margin it cannot reach.
 
     Of the wavelength `cutoff`, m, half the amplitude is left. Unless it is periodic, the map becomes smaller
-    by one cutoff along each edge. No point may be missing.
-
-    Raises
-    ------
-    ValueError
-        If nothing would be left.
+    by one cutoff along each edge; ValueError if nothing would be left. No point may be missing.
     """
     radius, shape = _window(topography, cutoff), topography.heights.shape
     size = "{:g} x {:g} m".format(*topography.size)

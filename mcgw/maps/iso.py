@@ -83,17 +83,9 @@ def moments_from(
 ) -> tuple[SpectralMoments, list[str]]:
     """Return the moments of a surface with these numbers, and what is doubtful about them.
 
-    Parameters
-    ----------
-    numbers : mapping of str to float or str
-        By their names, keys of `NUMBERS`; or Sq with Sal, ``autocorrelation`` and ``short``.
-    pruning : float, optional
-        Share of Sz below which peaks were not counted for Spd and Spc.
-
-    Raises
-    ------
-    ValueError
-        If a number is unknown, wrong or missing, or no isotropic surface has them all.
+    They are given by their names, keys of `NUMBERS`; or Sq with Sal, ``autocorrelation`` and ``short``. Peaks
+    below the share `pruning` of Sz were not counted for Spd and Spc. ValueError if a number is unknown, wrong
+    or missing, or no isotropic surface has them all.
     """
     known = (*NUMBERS, *_CORRELATED)
     for key in numbers:

@@ -167,14 +167,7 @@ def write_map(
 
 
 def read_foreign(path: Path, given: Given) -> Raw:
-    """Read a map or a profile by SurfaceTopography: the first channel of heights. Its unit is that of x too.
-
-    Raises
-    ------
-    ValueError
-        If it is not installed or cannot read the file, or the file holds no heights, or a file of this size
-        cannot hold so many.
-    """
+    """Read a map or a profile by SurfaceTopography: the first channel of heights, in the unit of x."""
     if find_spec("SurfaceTopography") is None:
         raise ValueError(
             f"{path}: {path.suffix or 'no ending'} is read by SurfaceTopography, which is not installed (the "

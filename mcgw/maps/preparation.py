@@ -43,13 +43,7 @@ class Preparation:
 
 
 def preparation_of(given: Mapping[str, Any]) -> Preparation:
-    """Read the keywords of `mcgw.fit`.
-
-    Raises
-    ------
-    SceneError
-        If words or numbers are none of those known, all of them told at once.
-    """
+    """Read the keywords of `mcgw.fit`; SceneError tells all mistakes at once."""
     kinds: dict[str, Kind] = {"parts": Whole(2), "trim": Whole()}
     words = {"form": Form, "missing": Missing, "spikes": SpikesTo, "lines": LinesTo}
     chosen = arguments(given, kinds | {name: Word(get_args(each)) for name, each in words.items()})
@@ -71,13 +65,7 @@ class Prepared:
 
 
 def prepared(topography: Topography, asked: Preparation) -> Prepared:
-    """Trim, crop, clean, level, fill and filter a map, in this order.
-
-    Raises
-    ------
-    ValueError
-        If nothing is left of the map, or it is flat.
-    """
+    """Trim, crop, clean, level, fill and filter a map, in this order; ValueError if it is flat or gone."""
     notes: list[str] = []
     kept, trim = topography, asked.trim
     if trim:

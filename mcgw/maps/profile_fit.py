@@ -120,25 +120,11 @@ class ProfileFit(Drawn):
 
 
 def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: Form = "plane") -> ProfileFit:
-    """Estimate moments and summits of the surface that profiles were taken from.
+    """Estimate moments and summits of the surface that profiles were taken from, far enough apart.
 
     Longer profiles count more. Standard errors follow from the power of the waves seen, as for maps
     (`mcgw.maps.waves`), with the profiles independent of each other; or from what stretches of them differ,
-    if that is more.
-
-    Parameters
-    ----------
-    profiles : sequence of Profile
-        Profiles of one surface, in any direction, far enough apart not to share waves.
-    cutoff : float or None
-        Shortest wavelength that counts, m, of the areal filter of ISO 16610-61; None: as measured.
-    form : {"none", "plane", "quadratic"}, optional
-        What is taken off first: nothing but the mean, a line, or a parabola.
-
-    Raises
-    ------
-    ValueError
-        If there is no profile, or they are flat, or too short for the cutoff.
+    if that is more. The form is that of a line: its mean, a straight line or a parabola.
     """
     if form not in _ORDERS:
         raise ValueError(f"form = {form!r}: a profile has plane (a line), quadratic (a parabola) or none")

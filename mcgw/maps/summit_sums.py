@@ -29,34 +29,18 @@ _FIRST = (1 / 12, -8 / 12, 0.0, 8 / 12, -1 / 12)  # the first difference of the 
 class Summits:
     """Summits of a map, and sums over it: the basis of its estimates.
 
-    Parameters
-    ----------
-    sums : ndarray
-        Shape (sums, sub-areas), in the order of `SUMS`; m, m^2, ...
-    x, y : ndarray
-        Positions from the corner of the map, m, shape (summits,); the centre of its first pixel is half a
-        pixel from the corner. Those of `mcgw.fit` are on the trimmed and cropped map.
-    heights : ndarray
-        Heights above the map's zero, m, shape (summits,).
-    bends : ndarray
-        Mean curvatures, 1/m, shape (summits,).
-    curvatures : ndarray
-        Principal curvatures, shape (2, summits), the larger ones first, 1/m; positive. Both are the mean one,
-        by plain differences, on ridges between pixels.
-    tile : ndarray of int
-        Sub-area of each, counted from 0 along x first.
-    pixel : (float, float)
-        Size of a pixel, m.
+    Arrays of summits have the shape (summits,). On ridges between pixels both curvatures are the mean one, by
+    plain differences.
     """
 
-    sums: Array
-    x: Array
-    y: Array
-    heights: Array
-    bends: Array
-    curvatures: Array
-    tile: Ints
-    pixel: tuple[float, float]
+    sums: Array  # in the order of `SUMS`, shape (sums, sub-areas), m, m^2, ...
+    x: Array  # places from the corner of the map, half a pixel before the centre of its first one, m;
+    y: Array  # those of `mcgw.fit` are on the trimmed and cropped map
+    heights: Array  # above the map's zero, m
+    bends: Array  # mean curvatures, 1/m
+    curvatures: Array  # principal ones, shape (2, summits), the larger ones first, 1/m; positive
+    tile: Ints  # sub-area of each, counted from 0 along x first
+    pixel: tuple[float, float]  # size of a pixel, m
 
     @property
     def radii(self) -> Array:
@@ -102,31 +86,29 @@ class Summits:
         where they are too few. And spectral moments of heights about its own mean, so that waves longer than
         the sub-area count less than on the whole map.
         """
-        points, *sums = np.where(self.sums[0] > 0, self.sums, np.nan)  # where nothing was seen
-        m = dict(zip(SUMS[1:], sums / points, strict=True))
         number = np.bincount(self.tile, minlength=self.parts)
 
         def mean(values: Array) -> Array:
-            total = np.bincount(self.tile, values, minlength=self.parts)
-            return np.asarray(np.where(number > 0, total / np.maximum(number, 1), np.nan))
+            return np.asarray(np.bincount(self.tile, values, self.parts) / number)
 
-        squares = mean((self.heights - mean(self.heights)[self.tile]) ** 2)
-        several = np.where(number > 1, number / np.maximum(number - 1, 1), np.nan)
         tile, across = np.arange(self.parts), math.isqrt(self.parts)
-        return Table(
-            (
-                Column("tile", tile),
-                Column("column", tile % across),
-                Column("row", tile // across),
-                Column("summits", number),
-                Column("eta", number / (points * math.prod(self.pixel)), unit="1/m^2"),
-                Column("radius", 1 / mean(self.bends), "R", "m"),
-                Column("sigma", np.sqrt(squares * several), unit="m"),
-                Column("m0", m["z2"] - m["z"] ** 2, unit="m^2"),
-                Column("m2", (m["slope_x"] + m["slope_y"]) / 2),
-                Column("m4", m["bend"], unit="1/m^2"),
+        with np.errstate(divide="ignore", invalid="ignore"):  # nan where nothing was seen
+            m = dict(zip(SUMS[1:], self.sums[1:] / self.sums[0], strict=True))
+            squares = mean((self.heights - mean(self.heights)[self.tile]) ** 2)
+            return Table(
+                (
+                    Column("tile", tile),
+                    Column("column", tile % across),
+                    Column("row", tile // across),
+                    Column("summits", number),
+                    Column("eta", number / (self.sums[0] * math.prod(self.pixel)), unit="1/m^2"),
+                    Column("radius", 1 / mean(self.bends), "R", "m"),
+                    Column("sigma", np.sqrt(squares * number / (number - 1)), unit="m"),
+                    Column("m0", m["z2"] - m["z"] ** 2, unit="m^2"),
+                    Column("m2", (m["slope_x"] + m["slope_y"]) / 2),
+                    Column("m4", m["bend"], unit="1/m^2"),
+                )
             )
-        )
 
 
 @njit(cache=True)
@@ -234,13 +216,7 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
     """Go once over a map that lacks no points, with `across` sub-areas along each axis.
 
     Four points at each edge are left out, unless the map is periodic. Where a mask says what was `seen`,
-    points count whose differences and neighbours were.
-
-    Raises
-    ------
-    ValueError
-        If the map is smaller than the sub-areas need, lacks a point, is too rough for squares of its
-        derivatives, or no point counts.
+    points count whose differences and neighbours were; ValueError if none is left.
     """
     z, mean = np.ascontiguousarray(topography.heights), topography.heights.mean()
     counts = np.empty((0, 0), dtype=np.bool_)

@@ -189,13 +189,7 @@ def filter_variance(cutoff: float) -> float:
 
 
 def checked_shape(rows: int, columns: int, *, held: int | None = None) -> tuple[int, int]:
-    """Rows and columns, if a map can have so many; `held` is how many bytes a file may hold packed for them.
-
-    Raises
-    ------
-    ValueError
-        If there is none, or more than 2^28 points, or more than any map packs into its file.
-    """
+    """Rows and columns, if a map can have so many; `held` is how many bytes of a file hold them packed."""
     if rows < 1 or columns < 1:
         raise ValueError(f"{columns} x {rows} points: a map has one or more along each axis")
     if rows * columns > MOST_PIXELS:
@@ -231,13 +225,7 @@ class Raw(NamedTuple):
 
 
 def metres_in(path: Path, unit: str | None) -> float:
-    """Size of a unit of length, m; none is m.
-
-    Raises
-    ------
-    ValueError
-        If it is unknown.
-    """
+    """Size of a unit of length, m; none is m."""
     if unit is not None and unit not in METRES:
         raise ValueError(f"{path}: {unit!r} is not a known unit of length: {', '.join(METRES)}")
     return METRES[unit or "m"]

@@ -20,19 +20,11 @@ _OUTSIDE = 0.025  # at either end of an interval
 
 
 class Uncertain(NamedTuple):
-    """A positive number that a map tells.
-
-    Parameters
-    ----------
-    value, error : float
-        ``error/value`` is the standard error of its logarithm.
-    low, high : float
-        Interval that holds the truth 95 times of 100.
-    """
+    """A positive number that a map tells."""
 
     value: float
-    error: float
-    low: float
+    error: float  # standard error; error/value is that of the logarithm
+    low: float  # both ends of an interval that holds the truth 95 times of 100
     high: float
 
     @property
@@ -65,21 +57,11 @@ def uncertain(value: float, error: float, waves: Spread = _NO_WAVES) -> Uncertai
 
 @dataclass(frozen=True, slots=True)
 class Waves:
-    """How far estimates scatter over maps of this size, if the heights are Gaussian.
+    """How far estimates scatter over maps of this size, if the heights are Gaussian."""
 
-    Parameters
-    ----------
-    spreads : dict of str to Spread
-        Of m0, m2, m4, alpha, eta, radius and sigma by spectral moments.
-    independent : float
-        How many independent heights would tell m0 as well.
-    covariance : ndarray
-        Of the logarithms of m0, m2 and m4 over such maps, shape (3, 3), to a factor.
-    """
-
-    spreads: dict[str, Spread]
-    independent: float
-    covariance: Array
+    spreads: dict[str, Spread]  # of m0, m2, m4, alpha, eta, radius and sigma by spectral moments
+    independent: float  # how many independent heights would tell m0 as well
+    covariance: Array  # of the logarithms of m0, m2 and m4 over such maps, shape (3, 3), to a factor
 
 
 def log_derivatives(moments: SpectralMoments) -> dict[str, Array]:
