@@ -7,6 +7,7 @@ surfaces as for a billion.
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import cached_property, reduce
+from itertools import chain
 from operator import add
 from time import perf_counter
 from typing import Any, TypeVar
@@ -106,22 +107,16 @@ def use_threads(threads: int | None) -> Iterator[None]:
 
 
 class Values:
-    """Draws the surfaces of one scene and keeps of each all its numbers.
+    """Draws the surfaces of one scene, of a fixed number, and keeps of each all its numbers.
 
     Others keep statistics, of one scene or of several that share their surfaces. Blocks depend on the scenes
     alone and are joined in order: the same bits whoever draws them, and despite interruptions.
-
-    Parameters
-    ----------
-    scene : Scene
-        With a fixed number of surfaces.
-    expected : Expected, optional
-        What stands for its sampler, to be asked its size.
     """
 
+    work = 1.0  # cost of a surface, in any unit
+
     def __init__(self, scene: Scene, expected: Expected | None = None) -> None:
-        self.scene, self._expected = scene, expected
-        self.work = 1.0  # cost of a surface, in any unit
+        self.scene, self._expected = scene, expected  # the latter stands for a sampler, to be asked its size
 
     @cached_property
     def sampler(self) -> Any:
@@ -163,22 +158,14 @@ class Values:
         return Results(joined(list(blocks)))
 
     def check(self, surfaces: int | None = None) -> None:
-        """Refuse surfaces that do not fit the memory; with a file, only a block must fit.
-
-        Raises
-        ------
-        StoreError
-            With the numbers.
-        """
-        scene = self.scene
+        """Refuse surfaces that do not fit the memory, or without a number of them blocks of a file."""
+        scene, row = self.scene, 8 * self.scene.width
         if surfaces is None:
             rows = min(self.rows, scene.n_surfaces)
-            return check_memory(
-                f"contact.separations: a block of {rows} surfaces", 3 * 8 * rows * scene.width
-            )
-        held = f"{len(scene.quantities)} quantities at {len(scene.separations)} separations"
-        # The blocks, and all of them joined.
-        return check_memory(f"ensemble.n_surfaces = {surfaces}: {held}", 2 * 8 * surfaces * scene.width)
+            check_memory(f"contact.separations: a block of {rows} surfaces", 3 * rows * row)
+        else:  # the blocks, and all of them joined
+            held = f"{len(scene.quantities)} quantities at {len(scene.separations)} separations"
+            check_memory(f"ensemble.n_surfaces = {surfaces}: {held}", 2 * surfaces * row)
 
 
 class Statistics(Values):
@@ -214,11 +201,11 @@ class Statistics(Values):
         from mcgw.ensemble.pooled import Pooled, Summarised, pooled_from  # as above
 
         whole, rest = list[Pooled](), list[Pooled]()
-        for (block,) in map(pooled_from, blocks):
+        for block in chain.from_iterable(map(pooled_from, blocks)):
             if block.n % self.rows:
                 rest = [block]
-            else:
-                whole = [reduce(add, [*whole, block])]
+            else:  # with what an earlier rest held
+                whole, rest = [reduce(add, [*whole, block])], []
         return Summarised(self.scene.tables, (*whole, *rest))
 
     def check(self, surfaces: int | None = None) -> None:  # noqa: ARG002

@@ -34,21 +34,11 @@ class Pooled:
 
     Of a sweep these are the values of its scenes, with covariances between scenes at each separation. Of one
     scene that keeps statistics all its numbers are the values of one quantity, at one place.
-
-    Parameters
-    ----------
-    n : int
-        Number of surfaces.
-    means : dict of str to ndarray
-        Means of each quantity, shape (values, separations).
-    products : dict of str to ndarray
-        Sums over the surfaces of products of two values' deviations from their means, shape (values, values,
-        separations).
     """
 
-    n: int
-    means: Values
-    products: Values
+    n: int  # number of surfaces
+    means: Values  # by quantity, shape (values, separations)
+    products: Values  # sums of products of two values' deviations, shape (values, values, separations)
 
     @classmethod
     def of(cls, values: Sequence[Values]) -> "Pooled":
@@ -145,19 +135,9 @@ def _sum_products(columns: Any, first: int, stop: int, out: Any) -> None:  # pra
 
 
 def products_of(columns: Array) -> Array:
-    """Return the sums over the rows of products of every two columns.
+    """Return the sums over the rows of products of every two columns, each contiguous.
 
     A library's matrix product adds in an order that depends on how many threads it has; this one does not.
-
-    Parameters
-    ----------
-    columns : ndarray
-        Shape (columns, rows), contiguous.
-
-    Returns
-    -------
-    ndarray
-        Shape (columns, columns).
     """
     width = len(columns)
     out = np.zeros((width, width))
@@ -169,21 +149,11 @@ def products_of(columns: Array) -> Array:
 
 @dataclass(frozen=True)
 class PointResults(Held):
-    """Mean and deviation of a point, a weighted mean of computed scenes.
+    """Mean and deviation of a point, a weighted mean of computed scenes."""
 
-    Parameters
-    ----------
-    pooled : Pooled
-        Statistics of its group.
-    scenes : ndarray of int
-        Computed scenes of the group.
-    weights : ndarray
-        Of what the modulus enters; anything else is the same for all of them.
-    """
-
-    pooled: Pooled
-    scenes: Ints
-    weights: Array
+    pooled: Pooled  # statistics of its group
+    scenes: Ints  # computed ones of the group
+    weights: Array  # of what the modulus enters; anything else is the same for all of them
 
     no_more = (
         "a sweep only keeps mean and standard deviation of a point; simulate(sweep.scene(point)) draws "
@@ -212,18 +182,10 @@ class PointResults(Held):
 
 @dataclass(frozen=True)
 class Summarised(Held):
-    """Mean, deviation and covariance of all numbers of a surface.
+    """Mean, deviation and covariance of all numbers of a surface."""
 
-    Parameters
-    ----------
-    names : tuple of str
-        Of tables of as many numbers each, one after the other.
-    parts : tuple of Pooled
-        Of all whole blocks together, which more may follow, and of a last one that is not whole.
-    """
-
-    names: tuple[str, ...]
-    parts: tuple[Pooled, ...]
+    names: tuple[str, ...]  # of tables of as many numbers each, one after the other
+    parts: tuple[Pooled, ...]  # all whole blocks together, which more may follow, and a last one that is not
 
     no_more = (
         'single surfaces are not kept with keep = "statistics"; scene.theory.distribution has exact '

@@ -4,9 +4,8 @@ And results as named arrays with axes, units and words, for files, xarray and pa
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -34,25 +33,15 @@ STATISTICS = {  # of each quantity, kept in place of values, and what they are
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """A table of values of surfaces that is read when it is asked for, by slices of its rows.
+    """A table of values of surfaces that is read when it is asked for, by slices of its rows."""
 
-    Parameters
-    ----------
-    n : int
-        Number of surfaces.
-    read : callable
-        Returns the rows of a slice.
-    """
-
-    n: int
-    read: Callable[[slice], Array]
+    n: int  # number of surfaces
+    read: Callable[[slice], Array]  # the rows of a slice
 
     def __len__(self) -> int:
-        """Return the number of surfaces."""
         return self.n
 
     def __getitem__(self, rows: slice) -> Array:
-        """Return some of the rows."""
         return self.read(rows)
 
 
@@ -84,30 +73,9 @@ class Held(ABC):
 
 @dataclass(frozen=True)
 class Results(Held):
-    """Values of every surface, of which statistics are made when they are asked for.
+    """Values of every surface, of which statistics are made when they are asked for."""
 
-    Parameters
-    ----------
-    tables : dict of str to ndarray or Rows
-        By name, shape (surfaces, separations).
-    """
-
-    tables: Mapping[str, Any]
-
-    @classmethod
-    def of(cls, parts: Sequence[tuple[Callable[..., Array], int]], names: Iterable[str]) -> "Results":
-        """Return tables whose parts, each of some surfaces, are read by (name, start, stop) of their rows."""
-        total = sum(n for _, n in parts)
-
-        def read(name: str, rows: slice) -> Array:
-            found, (start, stop, _) = list[Array](), rows.indices(total)
-            for part, n in parts:
-                if max(start, 0) < min(stop, n):
-                    found.append(part(name, max(start, 0), min(stop, n)))
-                start, stop = start - n, stop - n
-            return found[0] if len(found) == 1 else np.concatenate(found)
-
-        return cls({name: Rows(total, partial(read, name)) for name in names})
+    tables: Mapping[str, Any]  # arrays, or `Rows`, of shape (surfaces, separations)
 
     def rows(self) -> int:
         """Return the number of surfaces there are."""

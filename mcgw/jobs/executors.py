@@ -30,13 +30,7 @@ class Signals:
     number: int | None = None
 
     def check(self, kept: str) -> None:
-        """Raise if a signal has arrived.
-
-        Raises
-        ------
-        StoppedError
-            With what is kept.
-        """
+        """Raise if a signal has arrived, with what is kept."""
         if self.number is not None:
             name = "interrupted" if self.number == signal.SIGINT else "terminated"
             raise StoppedError(f"{name}: {kept}", 128 + self.number)
@@ -85,13 +79,6 @@ def drive(
     `task` is called with what `arguments` gives for a block. A block that the executor lost, as with its
     worker, is submitted once more, alone. At most `in_hand` blocks are submitted at a time. When a signal has
     come, which is asked several times a second, this returns; blocks in hand are dropped.
-
-    Raises
-    ------
-    RunError
-        If the executor takes no more work, or lost a block twice.
-    Exception
-        As the task raises.
     """
     todo, lost, running = deque(blocks), set[_Block](), dict[futures.Future[Any], _Block]()
     in_hand = getattr(executor, "in_hand", in_hand)
@@ -135,13 +122,7 @@ def _in_words(error: BaseException) -> str:
 
 
 def share_of(executor: Any, threads: int | None, shard: str | None) -> tuple[int, int] | None:
-    """Check who is to draw, and return the share that is named, as "2/8": its number from 1, and of how many.
-
-    Raises
-    ------
-    ValueError
-        If one of them is wrong, or a share is given to an executor.
-    """
+    """Check who is to draw, and return the share that is named, as (2, 8) for "2/8"."""
     if threads is not None and threads < 1:
         raise ValueError(f"threads = {threads}: give a whole number >= 1")
     if shard is not None and executor is not None:
@@ -160,18 +141,7 @@ def share_of(executor: Any, threads: int | None, shard: str | None) -> tuple[int
 
 
 class Jobs(futures.Executor):
-    """Worker processes on this machine, one thread each; if one dies, all are replaced.
-
-    Parameters
-    ----------
-    n : int
-        Number of processes.
-
-    Raises
-    ------
-    ValueError
-        If `n` is not positive.
-    """
+    """So many worker processes on this machine, one thread each; if one dies, all are replaced."""
 
     def __init__(self, n: int) -> None:
         if n < 1:
@@ -211,13 +181,7 @@ def _begin_worker() -> None:
 
 @contextmanager
 def dask_executor(address: str) -> Iterator[futures.Executor]:
-    """Yield the executor of a dask scheduler; it stays at work.
-
-    Raises
-    ------
-    RunError
-        If dask is not installed or nobody answers.
-    """
+    """Yield the executor of a dask scheduler; it stays at work."""
     try:
         distributed: Any = import_module("distributed")
     except ImportError:

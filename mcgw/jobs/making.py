@@ -1,21 +1,18 @@
 """From a plan to its file: its blocks are drawn, by whoever draws them, and merged."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from concurrent.futures import Executor, ThreadPoolExecutor
 from functools import lru_cache, partial
-from itertools import groupby
-from operator import itemgetter
 from pathlib import Path
 from threading import Event
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from mcgw.ensemble.results import Labelled, Results, Tables
+from mcgw.ensemble.results import Labelled
 from mcgw.errors import RunError, StoppedError, StoreError, in_one_line
 from mcgw.formats.files import State, state_of
 from mcgw.jobs.executors import Signals, drive, heed_signals
-from mcgw.store.ensembles import described, open_ensemble, open_results
-from mcgw.store.h5_reading import read_rows, read_tables
+from mcgw.store.ensembles import described, open_results
 from mcgw.store.identity import difference
 from mcgw.store.lock import locked, parts_of
 from mcgw.store.place import check_room, drop_leftovers, finished, put, remove_run, tidy
@@ -63,30 +60,9 @@ def make(
 ) -> int:
     """Draw what is missing of a file and make it; or of its blocks a share, for `mcgw.merge` to make it of.
 
-    Parameters
-    ----------
-    plan : Plan
-        Of the file.
-    progress : callable
-        Is told of the work that is done.
-    executor : concurrent.futures.Executor, optional
-        Draws the blocks. Default: threads of this process; one writes a block while others draw the next.
-    threads : int, optional
-        Of a block.
-    part : (int, int), optional
-        A share of all blocks: its number, from 1, and of how many.
-
-    Returns
-    -------
-    int
-        How many surfaces are then missing of the whole.
-
-    Raises
-    ------
-    StoreError
-        If the place belongs to something else, or the memory or the disk does not suffice.
-    RunError
-        If it could not be finished; what is done is kept.
+    An executor draws the blocks, or threads of this process: one writes a block while others draw the next.
+    Of a share `part` has its number, from 1, and of how many. Returns how many surfaces are then missing of
+    the whole.
     """
     if finished(plan) < plan.total:
         check_room(plan)
@@ -263,13 +239,7 @@ def make_file(plan: Plan, signals: Signals) -> None:
 
 
 def _merged(plan: Plan, check: Callable[[], None]) -> Labelled:
-    """Return what the surfaces of the file that is there, and then those of the shards, make.
-
-    Raises
-    ------
-    StoreError
-        If a shard is missing or damaged.
-    """
+    """Return what the surfaces of the file that is there, and then those of the shards, make."""
     held, seconds = 0, 0.0
     if not plan.axes and plan.path.exists():
         attributes, there = described(plan.path)
@@ -280,21 +250,4 @@ def _merged(plan: Plan, check: Callable[[], None]) -> Labelled:
     if [held, *(span.stop for span in shards)] != [*(span.first for span in shards), plan.total]:
         raise StoreError(f"{plan.folder}: blocks are missing")
     seconds += sum(shards.values())
-    if not plan.statistics:
-        files = [(plan.path, held)] * (held > 0) + [(plan.shard_path(span), span.n) for span in shards]
-        parts = [(partial(read_rows, path), n) for path, n in files]
-        return plan.contents([Results.of(parts, plan.scene.tables)], seconds)
-
-    def blocks() -> Iterator[tuple[int, Tables]]:
-        """Statistics of blocks, each with the group that it is of."""
-        if held:
-            from mcgw.ensemble.pooled import tables_of  # for those scenes alone
-
-            sums: Any = open_ensemble(plan.path).sums
-            yield from ((0, tables_of([part])) for part in sums.parts if part.n % plan.reducers[0].rows == 0)
-        for span in shards:
-            check()
-            yield plan.blocks[span][0], read_tables(plan.shard_path(span))
-
-    groups = zip(plan.reducers, groupby(blocks(), itemgetter(0)), strict=True)
-    return plan.contents([one.held(tables for _, tables in some) for one, (_, some) in groups], seconds)
+    return plan.contents(plan.held(shards, held, check), seconds)

@@ -2,14 +2,12 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import Executor
-from functools import partial
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any, overload
 
 from mcgw.ensemble.drawing import use_threads
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import Results
 from mcgw.ensemble.simulation import forecast, without_rule
 from mcgw.jobs.executors import share_of
 from mcgw.jobs.making import make
@@ -18,7 +16,7 @@ from mcgw.sampling.counts import GROUP
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene, storable
 from mcgw.store.ensembles import open_ensemble, open_sweep
-from mcgw.store.h5_reading import read_rows
+from mcgw.store.h5_reading import in_files
 from mcgw.store.place import as_recorded
 from mcgw.store.run_plan import Plan
 
@@ -122,9 +120,7 @@ def run(
         return left
     if scene.keep == "statistics":
         return open_ensemble(path)
-    return Ensemble(
-        plan.scene, plan.sampler, Results.of([(partial(read_rows, path), plan.total)], plan.scene.tables)
-    )
+    return Ensemble(plan.scene, plan.sampler, in_files([(path, plan.total)], plan.scene.tables))
 
 
 def _stages(scene: Scene, path: Path) -> Iterator[Scene]:

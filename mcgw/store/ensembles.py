@@ -3,17 +3,17 @@
 The sums of an ensemble where they lie: in its file, or in the blocks of a run in progress.
 """
 
-from functools import lru_cache, partial
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import GROUP, Held, Results
+from mcgw.ensemble.results import GROUP
 from mcgw.errors import StoreError
 from mcgw.formats.named_files import open_regular
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from
-from mcgw.store.h5_reading import look, read_rows, read_tables
+from mcgw.store.h5_reading import in_files, look, read_tables
 from mcgw.store.h5_writing import RUN_TYPE
 from mcgw.store.lock import parts_of
 from mcgw.store.run_plan import RECORD, Plan
@@ -62,11 +62,6 @@ def described(path: Path) -> tuple[dict[str, Any], Scene]:
     """Attributes and scene of a file, looked at once until it changes; of a sweep what its points come from.
 
     The numbers of a file of a gibibyte or more are not compared with their checksums.
-
-    Raises
-    ------
-    StoreError
-        If it is not such a file, damaged, or of another format.
     """
     with open(open_regular(path), "rb") as file:
         head, size = file.read(512), file.seek(0, 2)
@@ -121,44 +116,29 @@ def open_sweep(path: str | Path) -> "Sweep":
 
 def open_results(path: Path) -> "Ensemble | Sweep":
     """Open an ensemble, a sweep or a run in progress; errors as of `open_ensemble` and `open_sweep`."""
-    held: Held
     if (plan := unfinished(path)) is not None:
         if plan.axes:
             raise StoreError(
                 f"{path}: is an unfinished sweep; mcgw show prints its progress, mcgw sweep resumes it"
             )
-        shards = plan.shards()
-        if not shards:
+        if not (shards := plan.shards()):
             raise StoreError(f"{path}: no block of its run is finished yet")
-        if plan.statistics:
-            held = plan.reducers[0].held(read_tables(plan.shard_path(span)) for span in shards)
-        else:
-            held = Results.of(
-                [(partial(read_rows, plan.shard_path(x)), x.n) for x in shards], plan.scene.tables
-            )
-        return Ensemble(plan.scene, plan.sampler, held)
+        return Ensemble(plan.scene, plan.sampler, *plan.held(shards))
     attributes, scene = described(path)
     if "axes" in attributes:
         from mcgw.sweeps.points import sweep_of  # imports the samplers
 
         return sweep_of(attributes["scene"], attributes["axes"], read_tables(path, GROUP))
+    sampler = str(attributes["sampler"])
     if scene.keep == "statistics":
         from mcgw.ensemble.pooled import Summarised, pooled_from  # for those scenes alone
 
-        held = Summarised(scene.tables, pooled_from(read_tables(path, GROUP)))
-    else:
-        held = Results.of([(partial(read_rows, path), scene.n_surfaces)], scene.tables)
-    return Ensemble(scene, str(attributes["sampler"]), held)
+        return Ensemble(scene, sampler, Summarised(scene.tables, pooled_from(read_tables(path, GROUP))))
+    return Ensemble(scene, sampler, in_files([(path, scene.n_surfaces)], scene.tables))
 
 
 def read_attributes(path: Path) -> dict[str, Any]:
-    """Root attributes of a file of results; of a run in progress, those that are known.
-
-    Raises
-    ------
-    StoreError
-        If it is not such a file, damaged, or of another format.
-    """
+    """Root attributes of a file of results; of a run in progress, those that are known."""
     plan = unfinished(path)
     if plan is None:
         return described(path)[0]
@@ -170,16 +150,10 @@ def read_attributes(path: Path) -> dict[str, Any]:
 
 
 def unfinished(path: Path) -> Plan | None:
-    """Return the run or sweep that makes a file which is not there yet, if there is one.
-
-    Raises
-    ------
-    StoreError
-        If it has no record: one that is a single block leaves none.
-    """
+    """Return the run or sweep that makes a file which is not there yet, if there is one."""
     if path.exists() or not parts_of(path).is_dir():
         return None
-    if not (parts_of(path) / RECORD).exists():
+    if not (parts_of(path) / RECORD).exists():  # one that is a single block leaves none
         raise StoreError(f"{path}: no block of its run is finished yet")
     return Plan.open(parts_of(path))
 

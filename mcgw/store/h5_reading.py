@@ -6,8 +6,9 @@ whoever wrote the file.
 """
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,8 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.ensemble.results import GROUP, Tables
+from analytic.arrays import Array
+from mcgw.ensemble.results import GROUP, Results, Rows, Tables
 from mcgw.errors import StoreError
 from mcgw.formats.gate import open_h5
 from mcgw.store.h5_writing import FILETYPE, FORMAT, MOST_TEXT, PIECE, checksum, sha_of
@@ -58,13 +60,7 @@ def look(path: Path, filetype: str = FILETYPE, *, numbers: bool = True) -> dict[
 
 
 def read_tables(path: Path, group: str = "") -> Tables:
-    """All tables of a file, or of its group, each compared with its checksum.
-
-    Raises
-    ------
-    StoreError
-        If the file is gone or damaged.
-    """
+    """All tables of a file, or of its group, each compared with its checksum."""
     found: Tables = {}
     with _opened(path) as file:
         for name in table_names(file):
@@ -74,16 +70,23 @@ def read_tables(path: Path, group: str = "") -> Tables:
     return found
 
 
-def read_rows(path: Path, name: str, start: int, stop: int) -> NDArray[Any]:
-    """Rows `start` to `stop` of a table, compared with no more than the checksums of their chunks.
+def in_files(files: Sequence[tuple[Path, int]], names: Iterable[str]) -> Results:
+    """Return values that lie in files, of so many surfaces of each; read when they are asked for.
 
-    Raises
-    ------
-    StoreError
-        If the file is gone or damaged.
+    Then they are compared with no more than the checksums of their chunks.
     """
-    with _opened(path) as file:
-        return np.asarray(file[name][start:stop])
+    total = sum(n for _, n in files)
+
+    def read(name: str, rows: slice) -> Array:
+        found, (start, stop, _) = list[Array](), rows.indices(total)
+        for path, n in files:
+            if max(start, 0) < min(stop, n):
+                with _opened(path) as file:
+                    found.append(file[name][max(start, 0) : min(stop, n)])
+            start, stop = start - n, stop - n
+        return found[0] if len(found) == 1 else np.concatenate(found)
+
+    return Results({name: Rows(total, partial(read, name)) for name in names})
 
 
 def _compare(table: h5py.Dataset, pieces: Iterable[NDArray[Any]]) -> None:
@@ -128,13 +131,7 @@ def _opened(path: Path) -> Iterator[h5py.File]:
 
 
 def table_names(file: h5py.File) -> list[str]:
-    """Names of the tables of an open file, in order, those of its group too.
-
-    Raises
-    ------
-    StoreError
-        If one is none of 64-bit numbers, or there are too many.
-    """
+    """Names of the tables of an open file, in order, those of its group too; all of 64-bit numbers."""
     names = [name for name in file if name != GROUP]
     names += [f"{GROUP}/{name}" for name in file.get(GROUP, ())]
     if len(names) > _MOST_TABLES:
@@ -147,13 +144,7 @@ def table_names(file: h5py.File) -> list[str]:
 
 
 def attributes_in(file: h5py.File) -> dict[str, Any]:
-    """Root attributes of an open file that this program writes: texts, numbers, lists of numbers.
-
-    Raises
-    ------
-    StoreError
-        If one is too large, something else, or a text of several lines.
-    """
+    """Root attributes of an open file that this program writes: texts, numbers, lists of numbers."""
     return {name: _plain_value(name, file.attrs) for name in _ATTRIBUTES if name in file.attrs}
 
 

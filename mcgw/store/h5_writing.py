@@ -45,11 +45,6 @@ class SteadyFile(FileIO):
     """A new file for the HDF5 library that never shows it an error, for it may crash on one.
 
     After the first error nothing more is written; `check` raises it.
-
-    Parameters
-    ----------
-    path : Path
-        Must not exist.
     """
 
     def __init__(self, path: Path) -> None:
@@ -91,12 +86,7 @@ def write(path: Path, contents: Labelled, of: str = "", go_on: Callable[[], None
     """Write a new file, some rows of a table at a time.
 
     `of` says what the numbers are of, which `digest` is over as well; `go_on` is called often, and raises if
-    this is to end.
-
-    Raises
-    ------
-    OSError
-        If the disk does not take it.
+    this is to end, as OSError is if the disk does not take it.
     """
     with closing(SteadyFile(path)) as raw:
         try:

@@ -34,13 +34,7 @@ _DRAW = ("mcgw", "numpy", "numba", "scipy")
 
 
 def written(scene: Scene) -> tuple[str, str]:
-    """Return a scene as TOML, and SHA-256 of all its values, whoever gave them, but the number of surfaces.
-
-    Raises
-    ------
-    StoreError
-        If it is longer than a file may hold: a list of very many heights, or radii.
-    """
+    """Return a scene as TOML, and SHA-256 of all its values but the number of surfaces."""
     document = scene_document(scene)
     text = tomli_w.dumps(document)
     if len(text.encode()) > MOST_TEXT:

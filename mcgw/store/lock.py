@@ -45,13 +45,6 @@ def locked(folder: Path, *, shared: bool = False, patience: float | None = None)
 
     `shared` is for one of several jobs that each make a share of the blocks; `patience` is how many seconds
     to wait for another holder, by default `PATIENCE`. The files `LOCK_FILES` in the folder go with it.
-
-    Raises
-    ------
-    LockedError
-        If another process or thread holds it.
-    StoreError
-        If something else than a folder is there, or it cannot be made or locked.
     """
     new = not folder.exists()
     with ExitStack() as held:
@@ -111,13 +104,7 @@ def _remove_if_empty(folder: Path) -> None:
 
 
 def refuse_link(folder: Path) -> None:
-    """Refuse what stands in place of a folder.
-
-    Raises
-    ------
-    StoreError
-        If it is a link or a file.
-    """
+    """Refuse a link or a file in place of a folder."""
     with suppress(FileNotFoundError, NotADirectoryError):  # another process may just have removed it
         if not stat.S_ISDIR(os.lstat(folder).st_mode):
             raise StoreError(f"{folder}: is not a folder; remove it or choose another -o")

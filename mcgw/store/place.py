@@ -50,13 +50,7 @@ def as_recorded(scene: Scene, path: Path) -> Scene:
 
 
 def check_room(plan: Plan) -> None:
-    """Refuse what fits neither the place, nor the memory, nor the disk.
-
-    Raises
-    ------
-    StoreError
-        With the numbers, or with what is there.
-    """
+    """Refuse what fits neither the place, nor the memory, nor the disk."""
     if finished(plan) < plan.total:
         refuse_read_only(plan.path)
     for one in plan.reducers:
@@ -73,13 +67,7 @@ def check_room(plan: Plan) -> None:
 
 
 def finished(plan: Plan) -> int:
-    """Return the number of surfaces that its file holds; of a sweep all or none.
-
-    Raises
-    ------
-    StoreError
-        If the file is another's, damaged, or holds more surfaces than asked for.
-    """
+    """Return the number of surfaces that its file holds, if that is its own; of a sweep all or none."""
     path = plan.path
     if not path.exists():
         return 0
@@ -101,16 +89,9 @@ def finished(plan: Plan) -> int:
 
 
 def put(plan: Plan, contents: Callable[[], Labelled], go_on: Callable[[], None] | None = None) -> None:
-    """Write the file of a plan in one atomic step over what is there. With the lock.
+    """Write the file of a plan in one atomic step over what is there, if that is its own. With the lock.
 
     With `go_on`, of a file of many blocks, it is read back before those go.
-
-    Raises
-    ------
-    StoreError
-        If that is another's, or `contents` raises it.
-    RunError
-        If something else has this name at the end, or the disk does not take it.
     """
     path, before = plan.path, state_of(plan.path)
     finished(plan)

@@ -13,23 +13,25 @@ of valid shards is the only record of progress.
 """
 
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cached_property, partial
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import Labelled, Tables, Variable
+from mcgw.ensemble.results import GROUP, Labelled, Tables, Variable
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import Expected, check_output, sync, whole_file
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from
-from mcgw.store.h5_reading import look
+from mcgw.store.h5_reading import in_files, look, read_tables
 from mcgw.store.h5_writing import BLOCK_TYPE, FILETYPE, FORMAT, RUN_TYPE, write
 from mcgw.store.identity import another, commit, processor, versions, written
 from mcgw.store.lock import parts_of, refuse_link
@@ -63,10 +65,9 @@ class Span:
 
 
 def blocks_of(groups: Iterable[tuple[int, int]]) -> dict[Span, tuple[int, int]]:
-    """Cut the surfaces of groups, one group after the other, into blocks; the last one of each may be short.
+    """Cut the surfaces of groups, of (surfaces, surfaces of a block), into blocks; the last may be short.
 
-    Of each group its number of surfaces is given, and how many of them make a block; of each block follow the
-    group that it is of, and the number of its first surface in there.
+    Of each block follow the group that it is of, and the number of its first surface in there.
     """
     found, first = dict[Span, tuple[int, int]](), 0
     for group, (n, size) in enumerate(groups):
@@ -77,15 +78,7 @@ def blocks_of(groups: Iterable[tuple[int, int]]) -> dict[Span, tuple[int, int]]:
 
 
 def commit_shard(path: Path, run: str, span: Span, tables: Tables, seconds: float) -> None:
-    """Write a shard of a run in one atomic step, with the seconds that drawing it took.
-
-    Raises
-    ------
-    StoreError
-        If a number is not finite: nothing is written.
-    OSError
-        If the disk does not take it.
-    """
+    """Write a shard of a run in one atomic step, with the seconds that drawing it took."""
     for name, values in tables.items():
         if not np.all(np.isfinite(values)):
             raise StoreError(f"{path}: {name} holds numbers that are not finite")
@@ -100,23 +93,10 @@ def _write(path: Path, tables: Tables, about: dict[str, Any], expected: Expected
 
 
 class Plan:
-    """What is drawn into a file: a scene, or groups of scenes that share their surfaces.
+    """What is drawn into a file: a scene of so many surfaces, or groups of scenes that share their surfaces.
 
-    Parameters
-    ----------
-    asked : Scene or Points
-        With a number of surfaces, not a rule for it.
-    path : Path
-        The file to be.
-    sampler : str, optional
-        What has drawn the scene. Default: its own.
-    recorded : (str, str), optional
-        The identity of the run as it began, and the versions that drew then. Default: of now.
-
-    Raises
-    ------
-    StoreError
-        If the scene cannot be told by a file, or none can be there.
+    `sampler` is what has drawn the scene, by default its own; `recorded` the identity of a run that began,
+    and the versions that drew then.
     """
 
     def __init__(
@@ -140,13 +120,7 @@ class Plan:
 
     @classmethod
     def open(cls, folder: Path) -> "Plan":
-        """Return the one that a folder records.
-
-        Raises
-        ------
-        StoreError
-            If there is none, or it cannot be read.
-        """
+        """Return the one that a folder records."""
         refuse_link(folder)
         file, path = folder / RECORD, folder.with_name(folder.name.removesuffix(".parts"))  # of `parts_of`
         if not file.is_file():
@@ -168,13 +142,7 @@ class Plan:
 
     @cached_property
     def reducers(self) -> "tuple[Values, ...]":
-        """What draws each group, and what of it is kept; a scene is one group.
-
-        Raises
-        ------
-        SceneError
-            With the mistakes of all points of a sweep.
-        """
+        """What draws each group, and what of it is kept; a scene is one group."""
         if not isinstance(self.asked, Scene):
             return tuple(self.asked.groups)
         from mcgw.ensemble.drawing import reducer_of  # imports the samplers
@@ -195,9 +163,29 @@ class Plan:
         """Return what is kept of some surfaces of one group; it does not depend on `threads`."""
         from mcgw.ensemble.drawing import use_threads  # imports the samplers
 
-        group, first = self.blocks[span] if self.axes else (0, span.first)
+        group, first = self.blocks.get(span, (0, span.first))
         with use_threads(threads):
             return self.reducers[group].tables(first, first + span.n, *go_on)
+
+    def held(
+        self, spans: Iterable[Span], kept: int = 0, check: Callable[[], None] | None = None
+    ) -> list[Any]:
+        """Return what is held of each group in blocks, after the first surfaces of the file that are kept."""
+        if not self.statistics:
+            files = [(self.path, kept)] * (kept > 0) + [(self.shard_path(x), x.n) for x in spans]
+            return [in_files(files, self.scene.tables)]
+
+        def blocks() -> Iterator[tuple[int, Tables]]:
+            """Statistics, each with the group that they are of."""
+            if kept:
+                yield 0, read_tables(self.path, GROUP)
+            for span in spans:
+                if check:
+                    check()
+                yield self.blocks.get(span, (0, 0))[0], read_tables(self.shard_path(span))
+
+        groups = zip(self.reducers, groupby(blocks(), itemgetter(0)), strict=True)
+        return [one.held(tables for _, tables in some) for one, (_, some) in groups]
 
     def contents(self, held: list[Any], seconds: float) -> Labelled:
         """Return those of the file, of what is held of each group, with how long it took."""
@@ -218,15 +206,7 @@ class Plan:
         return {**about, "axes": self.axes} if self.axes else about
 
     def begin(self) -> None:
-        """Begin, or go on in the folder that is there; if more is wanted than it records, that is recorded.
-
-        Only with the lock.
-
-        Raises
-        ------
-        StoreError
-            If it belongs to another scene, seed or version, or is not a folder of a run.
-        """
+        """Begin, or go on in the folder that is there; if more is wanted, that is recorded. With the lock."""
         refuse_link(self.folder)
         self.shards_folder.mkdir(parents=True, exist_ok=True)
         sync(self.folder.parent)
@@ -245,10 +225,7 @@ class Plan:
         return record() if more else None
 
     def shards(self, *, numbers: bool = True) -> dict[Span, float]:
-        """Return the blocks that lie in valid shards, in order, and what drawing each took, s.
-
-        Each was looked at; or its head alone, without the `numbers`.
-        """
+        """Return the blocks in valid shards, and seconds of each; without `numbers` by their heads alone."""
         if not self.shards_folder.is_dir():
             raise RunError(f"{self.folder}: is missing or incomplete; run the command again")
         looked = (self.shard(path, numbers=numbers) for path in sorted(self.shards_folder.glob("block-*.h5")))
