@@ -34,12 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     asked = argparse.Namespace(command="")  # help, or the version
     with plain_output() as output:
-        try:
-            code = _main(argv, asked)
-        except SystemExit as end:  # of argparse: help, the version, or words that are none
-            if isinstance(end.code, str):  # of somebody's own code
-                raise
-            code = end.code or 0
+        code = _main(argv, asked)
         output.flush()
         lost = output.lost
         if code or lost is None or isinstance(lost, BrokenPipeError) or asked.command not in _PRINTED:
@@ -59,10 +54,14 @@ def _main(argv: Sequence[str] | None, asked: argparse.Namespace) -> int:
                 warnings.simplefilter("ignore")
             with speaking(args.amount):
                 return execute(args.function, args)
-    except KeyboardInterrupt as stop:
+    except SystemExit as end:  # of argparse: help, the version, or words that are none
+        if isinstance(end.code, str):  # of somebody's own code
+            raise
+        return end.code or 0
+    except _Terminated:
+        lines, code = "terminated", 143
+    except KeyboardInterrupt:
         lines, code = "interrupted", 130
-        if isinstance(stop, _Terminated):
-            lines, code = "terminated", 143
     except RunError as error:
         lines, code = str(error), error.code
     except MemoryError as error:

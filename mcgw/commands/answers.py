@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Annotated
 
 from mcgw.commands import kinds
-from mcgw.commands.outputs import ALL, JSONL, details, news, says, tell_cautions
+from mcgw.commands.outputs import ALL, details, news, says, tell_cautions
 
 
 def show(
@@ -142,7 +142,7 @@ def elastic(
     rel_err: float = 0.02,
     solves: int | None = None,
     seed: int = 1,
-    output: Annotated[Path | None, kinds.file_out(JSONL)] = None,
+    output: Annotated[Path | None, kinds.file_out("solves")] = None,
 ) -> None:
     """Find mean area, stiffness, conductance and gap of elastic surfaces from few boundary-element solves.
 

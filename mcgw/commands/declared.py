@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from inspect import Parameter, cleandoc, signature
 from pathlib import Path
-from typing import Any, NoReturn, get_args, get_origin
+from typing import Annotated, Any, NoReturn, get_args, get_origin
 
 import mcgw.commands
 from mcgw.commands.kinds import JUST_ONE, Call, Kind
@@ -90,13 +90,12 @@ def parser_of(names: Sequence[str] = ()) -> argparse.ArgumentParser:
         sub._negative_number_matcher = re.compile(r"-\.?\d")  # no option: a value such as -1MPa
         _add_arguments(sub, function, sections[0] if sections[1:] else "")
         amount = sub.add_mutually_exclusive_group()
-        said: Any = {"dest": "amount", "action": "store_const", "default": NEWS}
-        few = "print only errors and requested output"
-        amount.add_argument("-q", "--quiet", const=QUIET, help=few, **said)
-        amount.add_argument(
-            "-v", "--verbose", const=ALL, help="print everything: tables, cautions in full, sources", **said
-        )
-        sub.set_defaults(function=function, command=name)
+        for flags, const, told in (
+            (("-q", "--quiet"), QUIET, "print only errors and requested output"),
+            (("-v", "--verbose"), ALL, "print everything: tables, cautions in full, sources"),
+        ):
+            amount.add_argument(*flags, dest="amount", action="store_const", const=const, help=told)
+        sub.set_defaults(function=function, command=name, amount=NEWS)
     return parser
 
 
@@ -112,44 +111,50 @@ def _kinds_of(function: Command) -> Iterator[tuple[Parameter, Kind, str, str | N
 def _add_arguments(parser: argparse.ArgumentParser, function: Command, words: str) -> None:
     texts = {name: (metavar, " ".join(text.split())) for name, metavar, text in _WORDS.findall(words)}
     groups: dict[str | None, Any] = {None: parser}
-    for each, kind, option, group in _kinds_of(function):
-        if group and group not in groups:
+    parts = [*_kinds_of(function)]
+    for each, kind, option, group in parts:
+        if group not in groups:
             groups[group] = parser.add_mutually_exclusive_group(required=group == JUST_ONE)
         placed = each.kind is Parameter.POSITIONAL_OR_KEYWORD
         names = [each.name] if placed else [option, "--output"] if option == "-o" else [option]
         found = _options(each, kind, placed, *texts.get(each.name, (kind.metavar, kind.about)))
         groups[group].add_argument(*names, **found)
-    if any(kind.file == "scene" for _, kind, *_ in _kinds_of(function)):
+    if any(kind.file == "scene" for _, kind, *_ in parts):
         told = "change a key of the scene, such as grading.gamma=2 or contact.law=hertz; repeat for more keys"
         parser.add_argument("--set", action="append", metavar="KEY=VALUE", help=told)
 
 
 def _options(each: Parameter, kind: Kind, placed: bool, metavar: str, words: str) -> dict[str, Any]:
     """Return what argparse takes for a parameter."""
-    annotation = get_args(each.annotation)[0] if hasattr(each.annotation, "__metadata__") else each.annotation
-    types = [annotation, *get_args(annotation)]
-    types += [inner for one in types[1:] for inner in get_args(one)]
-    several = any(get_origin(one) is list for one in types)
+    types = [*_types_in(each.annotation)]
     words = f"{words}{kind.words}".removeprefix("; ").replace("%", "%%")
     if bool in types:
         return {"action": "store_true", "help": words}
-    default = None if each.default is Parameter.empty else each.default
+    given = each.default is not Parameter.empty
+    default = each.default if given else None
     if default not in (None, "", []):
         words += f"; default: {default}"
-    must = each.default is Parameter.empty and not kind.beside
     choices = kind.choices or tuple(one for one in types if isinstance(one, str))  # of a Literal
     plain = next((one for one in (Path, int, float) if one in types), str)
     found: dict[str, Any] = {"help": words, "default": default, "metavar": metavar or None}
     found["type"] = Path if kind.file else str if choices or kind.read else plain
     if choices:
         found["choices"] = choices
-    if any(get_origin(one) is dict for one in types):
+    if dict in types:
         found["action"] = "append"
-    elif several and kind.file != "out":
-        found["nargs"] = "*" if placed and not must else "+"
-    elif placed and not must:
+    elif list in types and kind.file != "out":
+        found["nargs"] = "*" if placed and given else "+"
+    elif placed and given:
         found["nargs"] = "?"
-    return found if placed else found | {"required": must}
+    return found if placed else found | {"required": not (given or kind.beside)}
+
+
+def _types_in(annotation: Any) -> Iterator[Any]:
+    """Yield all types of an annotation, and the words of its literals; not what stands beside it."""
+    annotation = get_args(annotation)[0] if get_origin(annotation) is Annotated else annotation
+    yield get_origin(annotation) or annotation
+    for inner in get_args(annotation):
+        yield from _types_in(inner)
 
 
 def execute(function: Command, args: argparse.Namespace) -> int:
@@ -158,10 +163,10 @@ def execute(function: Command, args: argparse.Namespace) -> int:
     Cautions of what it read are printed last.
     """
     parts = [*_kinds_of(function)]
-    files = (getattr(args, each.name) for each, kind, *_ in parts if kind.file in ("in", "scene"))
+    values = {each.name: getattr(args, each.name) for each, *_ in parts}
+    files = (values[each.name] for each, kind, *_ in parts if kind.file in ("in", "scene"))
     call = Call(args, next((path for path in files if isinstance(path, Path)), None))
     parts.sort(key=lambda part: part[1].file != "out")  # a scene may take its seed from an output
-    values = {each.name: getattr(args, each.name) for each, *_ in parts}
     for each, kind, option, _ in parts:
         if kind.read:
             values[each.name] = kind.read(values[each.name], option, call)

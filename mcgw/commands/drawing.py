@@ -7,18 +7,8 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from mcgw.commands.kinds import (
-    AT_MOST_ONE,
-    Call,
-    Cautioned,
-    Kind,
-    as_value,
-    file_out,
-    pair,
-    ranged,
-    scene_file,
-)
-from mcgw.commands.outputs import HDF5, details, news, notes
+from mcgw.commands import kinds
+from mcgw.commands.outputs import details, news, notes
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -27,14 +17,6 @@ if TYPE_CHECKING:
     from mcgw.scene.scene import Scene
 
 _LONG = 60.0  # seconds; longer runs state their duration beforehand
-Threads = Annotated[int | None, Kind("N", "number of threads; default: all cores; does not change results")]
-Jobs = Annotated[int | None, Kind("N", "use N processes instead"), AT_MOST_ONE]
-Dask = Annotated[
-    str | None, Kind("ADDRESS", "use the workers of a dask scheduler, tcp:// or tls://"), AT_MOST_ONE
-]
-Share = Annotated[
-    str | None, Kind("I/N", "draw the I-th of N shares, as one job of an array; then mcgw merge"), AT_MOST_ONE
-]
 
 
 @contextmanager
@@ -68,13 +50,13 @@ def share_done(shard: str, path: object, left: int) -> str:
 
 
 def run(
-    scene: Annotated["Scene", scene_file(cautious="full")],
+    scene: Annotated["Scene", kinds.scene_file(cautious="full")],
     *,
-    output: Annotated[Path, file_out(HDF5, "out/{}.h5", grows=True)],
-    threads: Threads = None,
-    jobs: Jobs = None,
-    dask: Dask = None,
-    shard: Share = None,
+    output: Annotated[Path, kinds.file_out("an ensemble", "out/{}.h5", grows=True)],
+    threads: kinds.Threads = None,
+    jobs: kinds.Jobs = None,
+    dask: kinds.Dask = None,
+    shard: kinds.Share = None,
 ) -> None:
     """Simulate a scene: draw its surfaces and store load, area, ... in HDF5; resumes where it stopped.
 
@@ -137,30 +119,30 @@ def _tell_before(scene: "Scene", expected: "Forecast", *, ruled: bool, shared: b
         news(f"forecast: {before(expected, seconds_per_surface(scene, sampler))}")
 
 
-def _axes(given: list[str], option: str, call: Call) -> dict[str, list[Any]]:  # noqa: ARG001
+def _axes(given: list[str], option: str, _call: kinds.Call) -> dict[str, list[Any]]:
     """Return lists of values by key."""
     axes: dict[str, list[Any]] = {}
     for text in given:
-        key, words = pair(text, option, "KEY=VALUES, such as grading.gamma=0.2:2:10 or =0.5,1,2")
-        parts = [as_value(part) for part in words.split(":")]
+        key, words = kinds.pair(text, option, "KEY=VALUES, such as grading.gamma=0.2:2:10 or =0.5,1,2")
+        parts = [kinds.as_value(part) for part in words.split(":")]
         if len(parts) == 3 and not any(isinstance(part, str) for part in parts):
-            axes[key] = ranged(words, f"{option} {key}")
+            axes[key] = kinds.ranged(words, f"{option} {key}")
         else:
-            axes[key] = [as_value(word) for word in words.split(",")]
+            axes[key] = [kinds.as_value(word) for word in words.split(",")]
     return axes
 
 
 def sweep(
-    scene: Cautioned,
+    scene: kinds.Cautioned,
     *,
-    over: Annotated[dict[str, list[Any]], Kind(read=_axes)],
+    over: Annotated[dict[str, list[Any]], kinds.Kind(read=_axes)],
     zip: bool = False,  # noqa: A002
     plan: bool = False,
-    output: Annotated[Path, file_out(HDF5, "out/{}.sweep.h5", grows=True, dry="plan")],
-    threads: Threads = None,
-    jobs: Jobs = None,
-    dask: Dask = None,
-    shard: Share = None,
+    output: Annotated[Path, kinds.file_out("an ensemble", "out/{}.sweep.h5", grows=True, dry="plan")],
+    threads: kinds.Threads = None,
+    jobs: kinds.Jobs = None,
+    dask: kinds.Dask = None,
+    shard: kinds.Share = None,
 ) -> None:
     """Draw many scenes at once on the same surfaces: means, deviations, paired ratios; resumes.
 
@@ -201,7 +183,7 @@ def sweep(
     return details(found)
 
 
-def merge(file: Annotated[Path, file_out(HDF5, grows=True)]) -> None:
+def merge(file: Annotated[Path, kinds.file_out("an ensemble", grows=True)]) -> None:
     """Merge the blocks of a run or sweep that several jobs drew (--shard i/n) into one file.
 
     Parameters

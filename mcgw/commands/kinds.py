@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from mcgw.commands.outputs import CSV, Format, Output
+from mcgw.commands.outputs import Output
 
 if TYPE_CHECKING:
     from mcgw.scene.scene import Scene
@@ -48,7 +48,7 @@ class Kind:
 def quantity(unit: str, metavar: str = "", about: str = "") -> Kind:
     """Return the kind of a positive number with a unit, in the SI unit named."""
 
-    def read(given: Any, option: str, call: Call) -> Any:  # noqa: ARG001
+    def read(given: Any, option: str, _call: Call) -> Any:
         from mcgw.formats.units import parse
 
         return parse(given, unit, option) if isinstance(given, str) else given
@@ -59,13 +59,15 @@ def quantity(unit: str, metavar: str = "", about: str = "") -> Kind:
 def values(unit: str) -> Kind:
     """Return the kind of numbers with units, and ranges of them; without a unit, others are left as typed."""
 
-    def read(given: Any, option: str, call: Call) -> Any:  # noqa: ARG001
+    def read(given: Any, option: str, _call: Call) -> Any:
         from mcgw.formats.units import parse
 
         found: list[Any] = []
         for text in given or ():
-            plain = parse(text, unit, option) if unit and ":" not in text else text
-            found += ranged(text, option, unit) if ":" in text else [plain]
+            if ":" in text:
+                found += ranged(text, option, unit)
+            else:
+                found.append(parse(text, unit, option) if unit else text)
         return found or None
 
     how = "at a constant ratio" if unit in _GEOMETRIC else "at equal steps"
@@ -120,11 +122,7 @@ def _read(path: Any, call: Call) -> Any:
 
 def file_in(metavar: str = "", about: str = "", opened: Callable[[Any, Call], Any] = _read) -> Kind:
     """Return the kind of a file that is read, which no output may replace; `opened` makes the value."""
-
-    def read(given: Any, option: str, call: Call) -> Any:  # noqa: ARG001
-        return given and opened(given, call)
-
-    return Kind(metavar, about, "in", read=read)
+    return Kind(metavar, about, "in", read=lambda given, _option, call: given and opened(given, call))
 
 
 def scene_file(*, others: bool = False, cautious: Literal["brief", "full", ""] = "brief") -> Kind:
@@ -144,12 +142,10 @@ def scene_file(*, others: bool = False, cautious: Literal["brief", "full", ""] =
                 raise ValueError(f"--set {changes[0]}: {path} is no scene (.toml); give one")
             return _read(path, call)
         pairs = (pair(text, "--set", "KEY=VALUE, such as grading.gamma=2") for text in changes or ())
+        changed = {key: as_value(value) for key, value in pairs}
         grown = next((each.path for each in call.outputs if each.grows), None)
-        scene = load_scene(
-            path,
-            changes={key: as_value(value) for key, value in pairs},
-            seed=None if grown is None else lambda: getattr(recorded_scene(grown), "seed", None),
-        )
+        seed = None if grown is None else lambda: getattr(recorded_scene(grown), "seed", None)
+        scene = load_scene(path, changes=changed, seed=seed)
         call.inputs.extend(files_of(path))
         if cautious:
             call.cautious.append((scene, f"mcgw show --plan {path}" if cautious == "brief" else ""))
@@ -159,12 +155,7 @@ def scene_file(*, others: bool = False, cautious: Literal["brief", "full", ""] =
 
 
 def file_out(
-    form: Format,
-    beside: str = "",
-    *,
-    names: tuple[str, ...] = (),
-    grows: bool = False,
-    dry: str = "",
+    what: str, beside: str = "", *, names: tuple[str, ...] = (), grows: bool = False, dry: str = ""
 ) -> Kind:
     """Return the kind of a file that is written: checked before anything is computed.
 
@@ -179,7 +170,7 @@ def file_out(
             given = call.source.parent / beside.format(stem)
         paths = [given / name.format(stem) for name in names] or [given] * bool(given)
         if not (dry and getattr(call.args, dry)):
-            call.outputs.extend(Output(path, form, option, grows) for path in paths)
+            call.outputs.extend(Output(path, what, option, grows) for path in paths)
         return paths if names else given
 
     words = f"; default: {beside.format('NAME')} beside what is read" if beside else ""
@@ -192,9 +183,17 @@ MaybeScene = Annotated["Scene | None", scene_file(cautious="")]
 SceneOrFile = Annotated["Scene | Path", scene_file(others=True)]
 SceneOrMap = Annotated["Scene | Path", scene_file(others=True, cautious="")]
 SceneOrResults = Annotated["Scene | Path", scene_file(others=True, cautious="full")]
-Table = Annotated[Path | None, file_out(CSV)]
+Table = Annotated[Path | None, file_out("a table")]
 Length = Annotated[float | None, quantity("m", "LENGTH")]
 Pixel = Annotated[float | None, quantity("m", "LENGTH", "size of a pixel, if the file does not give it")]
 Unit = Annotated[
     str | None, Kind("UNIT", "unit of the heights, such as um, if the file does not give it; default: m")
+]
+Threads = Annotated[int | None, Kind("N", "number of threads; default: all cores; does not change results")]
+Jobs = Annotated[int | None, Kind("N", "use N processes instead"), AT_MOST_ONE]
+Dask = Annotated[
+    str | None, Kind("ADDRESS", "use the workers of a dask scheduler, tcp:// or tls://"), AT_MOST_ONE
+]
+Share = Annotated[
+    str | None, Kind("I/N", "draw the I-th of N shares, as one job of an array; then mcgw merge"), AT_MOST_ONE
 ]

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from mcgw.commands import kinds
-from mcgw.commands.outputs import FIGURE, JSON, NPY, TOML, Format, Output, check_outputs, details, news, notes
+from mcgw.commands.outputs import Output, check_outputs, details, news, notes
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 
 if TYPE_CHECKING:
@@ -43,8 +43,8 @@ def fit(
     parts: int = 4,
     summits: kinds.Table = None,
     tiles: kinds.Table = None,
-    picture: Annotated[Path | None, kinds.file_out(FIGURE)] = None,
-    output: Annotated[Path, kinds.file_out(TOML)],
+    picture: Annotated[Path | None, kinds.file_out("a figure")] = None,
+    output: Annotated[Path, kinds.file_out("a scene")],
 ) -> None:
     """Fit summit density, radius and spread to measured height maps, and write a scene.
 
@@ -123,7 +123,7 @@ def fit(
     if picture and len(map) > 1:
         raise ValueError(f"--picture {picture}: draws one map; give one")
     if heights == "measured":
-        check_outputs([Output(heights_beside(output), NPY)])
+        check_outputs([Output(heights_beside(output), "heights")])
     size = None if pixel is None else (pixel, pixel)
     of_file: dict[str, Any] = {"pixel": size, "unit": unit, "missing": missing_value}
     found, ready, assumed_unit = fit_sources(map, partial(read_heights, **of_file), asked, use)
@@ -256,7 +256,8 @@ def surface(
         )
     points = int(found[2] or found[1]), int(found[1])
     map_file, *beside = files_of_map(output)
-    check_outputs([Output(map_file, Format("a map", WRITTEN)), *(Output(path, JSON) for path in beside)])
+    pixels = (Output(path, "the size of a pixel") for path in beside)
+    check_outputs([Output(map_file, "a map", own_endings=WRITTEN), *pixels])
     if from_spectrum is not None:
         if scene is not None:
             raise ValueError("--from-spectrum: draws a map without asperities; leave out SCENE")

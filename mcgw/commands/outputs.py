@@ -18,51 +18,37 @@ _AMOUNT = ContextVar("_AMOUNT", default=NEWS)
 _inputs: ContextVar[tuple[Path, ...]] = ContextVar("_inputs", default=())
 
 
-@dataclass(frozen=True)
-class Format:
-    """A file format and its file endings, in lower case."""
-
-    what: str
-    endings: tuple[str, ...]
-
-
-CSV = Format("a table", (".csv", ".txt"))
-HDF5 = Format("an ensemble", (".h5", ".hdf5"))
-HTML = Format("a web page", (".html", ".htm"))
-JSON = Format("the size of a pixel", (".json",))
-JSONL = Format("solves", (".jsonl",))
-NPY = Format("heights", (".npy",))
-TOML = Format("a scene", (".toml",))
-FIGURE = Format("a figure", (  # that matplotlib writes
+_PICTURES = (  # that matplotlib writes
     ".eps", ".gif", ".jpg", ".jpeg", ".pdf", ".pgf", ".png", ".ps", ".raw", ".rgba", ".svg", ".svgz", ".tif",
     ".tiff", ".webp", ".avif",
-))  # fmt: skip
-TABLE_OR_FIGURE = Format("a figure or its table", (*FIGURE.endings, ".csv"))
+)  # fmt: skip
+ENDINGS: dict[str, tuple[str, ...]] = {  # of what is written, in lower case
+    "a table": (".csv", ".txt"), "an ensemble": (".h5", ".hdf5"), "a web page": (".html", ".htm"),
+    "the size of a pixel": (".json",), "solves": (".jsonl",), "heights": (".npy",), "a scene": (".toml",),
+    "a figure": _PICTURES, "a figure or its table": (*_PICTURES, ".csv"),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Output:
-    """A file that a command is about to write, and the option that gave its name.
-
-    If it `grows`, the rules of ensembles say which may be replaced.
-    """
+    """A file that a command is about to write."""
 
     path: Path
-    format: Format
-    option: str = "-o"
-    grows: bool = False
+    what: str  # a key of `ENDINGS`, or anything with endings of its own
+    option: str = "-o"  # that gave its name
+    grows: bool = False  # the rules of ensembles say which may be replaced
+    own_endings: tuple[str, ...] = ()
+
+    @property
+    def endings(self) -> tuple[str, ...]:
+        """How its name may end."""
+        return self.own_endings or ENDINGS[self.what]
 
 
 def check_outputs(outputs: Iterable[Output], inputs: Iterable[Path] | None = None) -> None:
     """Refuse outputs that would destroy something or cannot be written; make missing folders and say so.
 
     No later output of this command replaces the inputs either.
-
-    Raises
-    ------
-    StoreError
-        If an output is an input or another output under any name, is in the folder of a run, replaces an
-        ensemble, has an ending that does not fit, or if there is no place for it.
     """
     from mcgw.formats.files import check_output, refuse_read_only
 
@@ -105,9 +91,8 @@ def _faults(output: Output, others: Iterable[Output]) -> Iterator[str]:
         if folder.suffix == ".parts" and any((folder / name).exists() for name in LOCK_FILES):
             yield f"{folder} is the folder of a run"
     yield from (f"is also the output of {other.option}" for other in others if _same_file(path, other.path))
-    if not path.name.lower().endswith(output.format.endings):
-        known = ", ".join(output.format.endings)
-        yield f"{output.format.what} is written there, whose name ends in {known}"
+    if not path.name.lower().endswith(output.endings):
+        yield f"{output.what} is written there, whose name ends in {', '.join(output.endings)}"
     if output.grows:
         return
     if parts_of(path).exists():
@@ -119,7 +104,7 @@ def _faults(output: Output, others: Iterable[Output]) -> Iterator[str]:
             return
     if _holds_results(path):
         yield "is an ensemble of mcgw, which this would replace"
-    if not set(HDF5.endings) & set(output.format.endings):
+    if not {*ENDINGS["an ensemble"]} & {*output.endings}:
         yield "is an HDF5 file, which this would replace"
 
 
@@ -174,7 +159,6 @@ def tell_cautions(source: Any, instead: str = "") -> None:
     from mcgw.scene.scene import Scene
 
     scene = getattr(source, "scene", source)
-    doubts: list[str] = []
     if isinstance(scene, Scene):
         from mcgw.scene.cautions import cautions
         from mcgw.scene.surface import perhaps_other_units
@@ -183,7 +167,7 @@ def tell_cautions(source: Any, instead: str = "") -> None:
     else:
         from mcgw.sweeps.points import sweep_cautions
 
-        lines = sweep_cautions(source)
+        lines, doubts = sweep_cautions(source), []
     if instead and not says(ALL):
         number = len(lines) - len(doubts)
         lines = [*doubts, *([f"{number} caution{'s' * (number > 1)}: {instead}"] if number else [])]

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from mcgw.commands.kinds import Kind
-from mcgw.commands.outputs import TOML, Output, check_outputs, news
+from mcgw.commands.outputs import Output, check_outputs, news
 
 SCHEMA = "scene.schema.json"
 
@@ -48,7 +48,7 @@ def init(
     scene = (files("mcgw.scene") / "presets" / f"{preset}.toml").read_bytes()
     path = output or Path(f"{preset}.toml")
     beside, known = path.with_name(SCHEMA), (files("mcgw.scene") / SCHEMA).read_bytes()
-    check_outputs([Output(path, TOML)])
+    check_outputs([Output(path, "a scene")])
     if path.exists():
         raise ValueError(f"{path}: already exists; give another name with -o")
     news(f"{path}: {PRESETS[preset]}")

@@ -1,23 +1,10 @@
 """Views of results: ``mcgw compare``, ``converge``, ``tradeoff``, ``report``, ``figures`` and ``export``."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from mcgw.commands.kinds import MaybeScene, SceneIn, SceneOrFile, Table, file_in, file_out, quantity, values
-from mcgw.commands.outputs import (
-    ALL,
-    CSV,
-    FIGURE,
-    HTML,
-    TABLE_OR_FIGURE,
-    Format,
-    Output,
-    check_outputs,
-    details,
-    news,
-    says,
-    tell_cautions,
-)
+from mcgw.commands.outputs import ALL, Output, check_outputs, details, news, says, tell_cautions
 
 _TRADED = "{}-tradeoff.csv", "{}-tradeoff-measured.csv", "{}-tradeoff.png"
 
@@ -25,7 +12,7 @@ _TRADED = "{}-tradeoff.csv", "{}-tradeoff-measured.csv", "{}-tradeoff.png"
 def compare(
     file: Annotated[Path, file_in("FILE", "file of an ensemble or of a sweep (HDF5)")],
     *,
-    output: Annotated[Path, file_out(FIGURE, "{}.png")],
+    output: Annotated[Path, file_out("a figure", "{}.png")],
     csv: Table = None,
     laws: bool = False,
 ) -> bool:
@@ -67,7 +54,7 @@ def compare(
 def converge(
     scene: SceneIn,
     *,
-    output: Annotated[list[Path], file_out(TABLE_OR_FIGURE, "out", names=("{}-converge.png",))],
+    output: Annotated[list[Path], file_out("a figure or its table", "out", names=("{}-converge.png",))],
 ) -> bool:
     """Test statistical convergence: slopes, coverage, variance, skewness, ... (exit code 1 if it fails).
 
@@ -96,7 +83,7 @@ def converge(
 def tradeoff(
     scene: SceneIn,
     *,
-    output: Annotated[list[Path], file_out(TABLE_OR_FIGURE, "out", names=_TRADED)],
+    output: Annotated[list[Path], file_out("a figure or its table", "out", names=_TRADED)],
     seconds: Annotated[float, quantity("s")] = 60.0,
 ) -> None:
     """Measure what each answer costs, how exact it is, and recommend a way.
@@ -130,7 +117,7 @@ def tradeoff(
 def report(
     file: Annotated[Path, file_in("FILE", "file of an ensemble (HDF5)")],
     *,
-    output: Annotated[Path, file_out(HTML, "{}.html")],
+    output: Annotated[Path, file_out("a web page", "{}.html")],
     pressures: Annotated[list[float] | None, values("Pa")] = None,
 ) -> None:
     """Write a report: one HTML page with figures, tables, verdict and provenance.
@@ -202,7 +189,7 @@ def figures(
     files = {
         name: [output / f"{name}.{ending}" for ending in (*formats, *["csv"] * csv)] for name in only or names
     }
-    check_outputs(Output(path, TABLE_OR_FIGURE) for paths in files.values() for path in paths)
+    check_outputs(Output(path, "a figure or its table") for paths in files.values() for path in paths)
     drawn: tuple[Path, ...] = ()
     with together():
         for name, data in figures_of(of_paper() if scene is None else Compared(scene), only or names):
@@ -261,10 +248,10 @@ def export(
 
     *tables, together = files_of_export(output, quantile)
     if to == "json":
-        check_outputs([Output(output, Format("a table", (".json",)))])
+        check_outputs([Output(output, "a table", own_endings=(".json",))])
     else:
-        form = Format(f"a table for {to}", PROGRAMS[to].endings)
-        check_outputs([*(Output(path, form) for path in tables), Output(together, CSV)])
+        form: Any = {"what": f"a table for {to}", "own_endings": PROGRAMS[to].endings}
+        check_outputs([*(Output(path, **form) for path in tables), Output(together, "a table")])
     made = exported(
         source, output, to=to, table=table, points=points, pressures=pressures, quantiles=quantile,
         units=units,

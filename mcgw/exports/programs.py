@@ -47,8 +47,8 @@ class Kind(NamedTuple):
         return self.quantity == "conductance" and scene.filled is not None and scene.filled.gas is not None
 
 
-_ALL = (("pressure", "gap"), ("conductance", "pressure"), ("conductance", "gap"), ("stiffness", "pressure"))
-KINDS = {kind.name: kind for kind in (Kind(*each) for each in _ALL)}
+_ALL = ("pressure-gap", "conductance-pressure", "conductance-gap", "stiffness-pressure")
+KINDS = {name: Kind(*name.split("-")) for name in _ALL}
 
 
 @dataclass(frozen=True)
@@ -158,9 +158,9 @@ class Sheet(NamedTuple):
         yield f"units: {what} in {units[0]}; {kind.against} in {units[1]}"
         if kind.quantity == "conductance" and scene.thermal:
             yield f"joint: {joint_text(scene)}"
-        if kind.stays(scene) and scene.thermal and kind.against == "gap":
+        if kind.stays(scene) and kind.against == "gap":
             yield "gas also conducts beyond the last line: add separations up to where the bodies part"
-        elif kind.stays(scene) and scene.thermal:
+        elif kind.stays(scene):
             yield "at pressure 0 it has the value of the lowest pressure"
         if kind.against != "gap":
             return
@@ -176,12 +176,7 @@ class Sheet(NamedTuple):
     def text(self, name: str, x: Array, y: Array, file: str) -> str:
         """Comments, header and rows of a curve, "mean" or a quantile, for a file of this name.
 
-        Both columns are in the units of the file; x rises.
-
-        Raises
-        ------
-        ValueError
-            If the program has no room for it.
+        Both columns are in the units of the file; x rises. What the program has no room for is refused.
         """
         kind, program, lines = self.kind, self.program, [*self.heading(name)]
         overclosure = program.overclosure and kind.quantity == "pressure"

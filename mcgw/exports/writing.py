@@ -37,8 +37,7 @@ _ARGUMENTS = {
 }  # fmt: skip
 
 
-# x, rising, and by name means and quantiles, nan where nothing is carried.
-Numbers = tuple[Array, dict[str, Array]]
+Curves = tuple[Array, list[Array]]  # rising gaps or pressures, and there means and quantiles
 
 
 def export(
@@ -139,20 +138,23 @@ def export(
         )
     shares = asked.get("quantiles", _QUANTILES if source.n_surfaces > 1 else ())
     if kind.against == "gap":
-        x, columns = at_gaps(source, kind, wanted, points, shares)
+        x, curves = at_gaps(source, kind, wanted, points, shares)
     else:
-        x, columns = at_pressures(scene, kind, wanted, points, shares)
+        x, curves = at_pressures(scene, kind, wanted, points, shares)
+    columns = dict(zip(["mean", *map(quantile_name, shares)], curves, strict=True))
+    check_monotone(kind, x, columns)
+    carried = columns["mean"] > 0
     origin = f"mcgw {version('mcgw')}; SHA-256 of the {digest}"
     sheet = Sheet(scene, source.n_surfaces, kind, PROGRAMS[to], units, origin)
     files = files_of_export(path, shares)
     (per_x, unit_x), (per_y, unit_y) = sheet.unit(kind.against), sheet.unit(kind.quantity)
-    every = [Column(kind.against, per_x * x, unit=unit_x)]
+    every = [Column(kind.against, per_x * x[carried], unit=unit_x)]
     with together():
         for file, (name, y) in zip(files, columns.items(), strict=False):
-            some = ~np.isnan(y)
+            some = carried & (y > 0)  # a quantile may carry nothing where the mean does
             text = sheet.text(name, per_x * x[some], per_y * y[some], file.name)
             write_whole(file, [text.encode("ascii", "replace")])
-            values = np.where(some, (per_y * y).astype(object), "").tolist()
+            values = np.where(some, (per_y * y).astype(object), "")[carried].tolist()
             every.append(Column(f"{kind.quantity} {name}", values, unit=unit_y))
         Table(tuple(every)).write(files[-1], comment=f"{kind.name}; SHA-256 of the {digest}")
     return files
@@ -182,7 +184,7 @@ def _contact_table(source: Scene | Ensemble, pressures: Any, points: int, digest
             "the mean pressure does not fall as the gap rises; give more surfaces, or fewer rows"
         )
     conductance = covariance = None
-    if "conductance_si" in scene.quantities:
+    if conducts:
         conductance = ensemble.mean(KINDS["conductance-gap"].answer(scene))[order].tolist()
     if ensemble.n_surfaces > 1:
         covariance = ensemble.covariance("pressure")[np.ix_(order, order)].tolist()
@@ -229,7 +231,7 @@ def surfaces_for(
 
 def at_gaps(
     source: Scene | Ensemble, kind: Kind, pressures: Array | None, points: int, shares: tuple[float, ...]
-) -> Numbers:
+) -> Curves:
     """Return mean and quantiles of these shares over surfaces at equal gap, m.
 
     The pressures are those of the rows of a scene; the first and the last bound those of an ensemble, which
@@ -255,12 +257,12 @@ def at_gaps(
         some = simulate(drawn, keep="sums", n_surfaces=min(ensemble.n_surfaces, _MOST))
     name = kind.answer(ensemble.scene)
     values = [ensemble.mean(name)[rows], *(some.quantile(name, share)[rows] for share in shares)]
-    return _checked(kind, shares, ensemble.separations[rows] * ensemble.scene.surface.sigma, values)
+    return ensemble.separations[rows] * ensemble.scene.surface.sigma, values
 
 
 def at_pressures(
     scene: Scene, kind: Kind, pressures: Array | None, points: int, shares: tuple[float, ...]
-) -> Numbers:
+) -> Curves:
     """Return mean and quantiles over specimens that all carry the same load: those of `mcgw.solve`."""
     if pressures is None:
         pressures = pressures_of(scene, points)
@@ -269,13 +271,12 @@ def at_pressures(
     values = [np.array([each.value[name] for each in solved])]
     values += [np.array([np.quantile(each.surfaces[name], share) for each in solved]) for share in shares]
     per = area if kind.quantity == "stiffness" else 1.0
-    return _checked(kind, shares, pressures, [each / per for each in values])
+    return pressures, [each / per for each in values]
 
 
-def _checked(kind: Kind, shares: tuple[float, ...], x: Array, values: list[Array]) -> Numbers:
-    """Name the numbers, without rows that carry nothing; refuse what is not monotonic."""
-    named = dict(zip(["mean", *map(quantile_name, shares)], values, strict=True))
-    for name, every in named.items():
+def check_monotone(kind: Kind, x: Array, columns: dict[str, Array]) -> None:
+    """Refuse a mean or quantile that is not monotone where it carries something."""
+    for name, every in columns.items():
         at, y = x[every > 0], every[every > 0]
         if at.size < 2:
             raise ValueError(
@@ -289,11 +290,8 @@ def _checked(kind: Kind, shares: tuple[float, ...], x: Array, values: list[Array
                 f"{kind.name}, {name}: is not monotone at {kind.against} = {worst:.4g}, as programs require; "
                 "give fewer points, or a contact law without jumps"
             )
-    carried = values[0] > 0
-    return x[carried], {name: np.where(y > 0, y, np.nan)[carried] for name, y in named.items()}
 
 
 def quantile_name(quantile: float) -> str:
     """Name of a quantile in file names: q05 for 0.05."""
-    digits = f"{100 * quantile:.6g}"
-    return f"q{digits.zfill(2)}" if "." not in digits else f"q{digits}"
+    return f"q{100 * quantile:02.6g}"

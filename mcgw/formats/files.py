@@ -97,23 +97,9 @@ def together() -> Iterator[list[Waiting]]:
 def whole_file(path: Path, *, expected: Expected = "anything", folder: Path | None = None) -> Iterator[Path]:
     """Name to write a file under; at the end it takes the place of `path`, on an error it goes.
 
-    Inside of `together` it takes that place when all files are whole.
-
-    Parameters
-    ----------
-    path : Path
-        Its name; a link of that name is replaced, not followed.
-    expected : State or None, optional
-        Which file is to be replaced, from `state_of`; None: there must be none.
-    folder : Path, optional
-        On the same disk, where it lies until it is whole. Default: beside `path`.
-
-    Raises
-    ------
-    FileExistsError
-        If another file than the expected one has this name at the end.
-    OSError
-        If it cannot be written; then nothing is left behind and an older file is as it was.
+    Inside of `together` it takes that place when all files are whole. A link of that name is replaced, not
+    followed. If another file than the `expected` one, from `state_of` (None: there must be none), has it at
+    the end, that is a FileExistsError. Until then it lies in a `folder` of the same disk, or beside `path`.
     """
     temporary = temporary_beside((folder or path.parent) / path.name)
     try:
@@ -186,12 +172,6 @@ def check_output(path: Path) -> None:
     """Refuse a place where no file can be put, before anything is computed; make its folder.
 
     Temporary files that dead processes left there are removed.
-
-    Raises
-    ------
-    StoreError
-        If the name is taken by something else than a file, is a link or too long, or if the folder
-        cannot be made or written.
     """
     name = path.name
     try:

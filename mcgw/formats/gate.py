@@ -30,17 +30,8 @@ _FILTERS = {*range(1, 7), h5py.h5z.FILTER_LZF}
 def open_h5(path: Path | str) -> h5py.File:
     """Open an HDF5 file for reading, if it may be read.
 
-    Without a lock where a disk keeps none: files are whole when they get their names.
-
-    Raises
-    ------
-    StoreError
-        If it is no regular file, or is damaged where its structure stands; if there is an external link,
-        external storage, a virtual dataset, or a filter that HDF5 would load; if all datasets declare more
-        than 1100 times the file, or a chunk is beyond its data or memory; if groups are nested too deeply, or
-        there are too many objects.
-    OSError
-        If it is no HDF5 file.
+    What is no HDF5 file is an OSError. What is no regular file, damaged where its structure stands, leads out
+    of itself, needs a filter that HDF5 would load, or declares more than it can hold, is a StoreError.
     """
     with open(open_regular(Path(path)), "rb") as found:
         size = found.seek(0, 2)
@@ -58,7 +49,10 @@ def open_h5(path: Path | str) -> h5py.File:
 
 
 def opened(path: Path | str) -> h5py.File:
-    """Open an HDF5 file for reading without a look at it; for files that are checked otherwise."""
+    """Open an HDF5 file for reading without a look at it; for files that are checked otherwise.
+
+    Without a lock where a disk keeps none: files are whole when they get their names.
+    """
     try:
         return h5py.File(path, "r")
     except OSError as error:
@@ -115,14 +109,8 @@ def _declared(name: str, item: Any) -> int:
 def check_archive(path: Path) -> None:
     """Refuse a zip archive that unpacks to far more than it is, or describes itself by entities.
 
-    Python's `zipfile` never unpacks more of a member than its directory declares, which is summed here.
-
-    Raises
-    ------
-    ValueError
-        If it is damaged, has more than 1000 members, unpacks to more than 64 MiB and 200 times its size, or
-        to more than the memory available, is packed by another method than deflate, or is encrypted; or if an
-        XML member has a document type.
+    Python's `zipfile` never unpacks more of a member than its directory declares, which is summed here. What
+    is damaged, has too many members, or one that is encrypted or not packed by deflate, is refused, too.
     """
     size = path.stat().st_size
     try:

@@ -26,13 +26,7 @@ _ASIDE = re.compile(r'"(?:[^"\\\n]|\\.)*+"|\'[^\'\n]*+\'|#[^\n]*+')
 
 
 def open_regular(path: Path) -> int:
-    """Descriptor of a regular file, for reading; a pipe or device is refused without waiting for it.
-
-    Raises
-    ------
-    StoreError
-        If there is none, or it is not a regular file.
-    """
+    """Descriptor of a regular file, for reading; a StoreError of none, or of a pipe, without waiting."""
     try:
         fd = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0))
     except (OSError, ValueError) as error:
@@ -44,13 +38,7 @@ def open_regular(path: Path) -> int:
 
 
 def read_bytes(path: Path, most: int) -> bytes:
-    """Return the contents of a regular file of at most so many bytes; a link is followed.
-
-    Raises
-    ------
-    StoreError
-        If it cannot be read, is not a regular file, or is longer.
-    """
+    """Return the contents of a regular file; a StoreError if it cannot be read, or has more bytes."""
     with os.fdopen(open_regular(path), "rb") as file:
         try:
             data = file.read(most + 1)
@@ -62,13 +50,7 @@ def read_bytes(path: Path, most: int) -> bytes:
 
 
 def read_text(path: Path, most: int) -> str:
-    """As `read_bytes`, UTF-8 with or without a mark at its beginning.
-
-    Raises
-    ------
-    StoreError
-        Also if it is not such text.
-    """
+    """As `read_bytes`, UTF-8 with or without a mark at its beginning; a StoreError of what is not."""
     try:
         return read_bytes(path, most).decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -78,10 +60,7 @@ def read_text(path: Path, most: int) -> str:
 def open_npy(path: Path) -> "NDArray[Any]":
     """Map integers or floats of any shape into memory, read-only; nothing is allocated or unpickled.
 
-    Raises
-    ------
-    ValueError
-        If the file cannot be read, is damaged, or holds anything else.
+    A file that is damaged or holds anything else is a ValueError.
     """
     import numpy as np  # the child that looks at files with little memory does without
 
@@ -103,25 +82,17 @@ def open_npy(path: Path) -> "NDArray[Any]":
 def loads(text: str) -> dict[str, Any]:
     """Read a TOML document as `tomllib.loads`, in a time that grows no faster than its length.
 
-    Raises
-    ------
-    ValueError
-        If it is not TOML, a number has more than 4000 digits, a dotted key a hundred parts, or brackets are
-        nested too deeply.
+    Numbers of more than 4000 digits, dotted keys of a hundred parts and deep nesting are a ValueError, too.
     """
     if _LONG_KEY.search(text) and _LONG_KEY.search(_ASIDE.sub("t", text)):
         raise ValueError(f"a dotted key has more than {_MOST_PARTS} parts")
-    parsed: dict[str, Any] = _parsed(tomllib.loads, text, 4000)  # of a number: Python reads no more
-    return parsed
+    return dict(_parsed(tomllib.loads, text, 4000))  # digits of a number: Python reads no more
 
 
 def loads_json(text: str | bytes) -> Any:
-    """Read a JSON document as `json.loads`; what is no JSON but Python's, such as NaN, is refused.
+    """Read a JSON document as `json.loads`, UTF-8; a ValueError of what only Python takes, such as NaN, too.
 
-    Raises
-    ------
-    ValueError
-        If it is not JSON in UTF-8, a number has more than 300 digits, or brackets are nested too deeply.
+    And of numbers of more than 300 digits and of deep nesting.
     """
     text = text if isinstance(text, str) else text.decode("utf-8-sig")
     return _parsed(partial(json.loads, parse_constant=_refuse_constant), text, 300)  # no float has more

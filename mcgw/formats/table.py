@@ -24,37 +24,18 @@ _PRINTED = {"d/sigma": "d/σ", "gap/sigma": "gap/σ", "^2": "²", "+-": "±", " 
 
 @dataclass(frozen=True)
 class Column:
-    """Numbers or texts of one kind.
+    """Numbers or texts of one kind, one for each row."""
 
-    Parameters
-    ----------
-    name : str
-        Its name in a CSV file or a DataFrame.
-    values : array_like of float or sequence of str
-        One for each row.
-    words : str, optional
-        Its heading; default: `name`.
-    unit : str, optional
-        Unit of the numbers.
-    form : str, optional
-        Format of a number for a reader; files have all digits.
-    missing : str, optional
-        Text in place of nan.
-    between : str, optional
-        Text between it and the column before it, in whose cell it stands, such as an error or the end of an
-        interval; where it is nan, the other stands alone. Default: it has cells of its own.
-    error : array_like, optional
-        Error of each number, which is shown to the second digit of its error.
-    """
-
-    name: str
+    name: str  # in a CSV file or a DataFrame
     values: Any
-    words: str = ""
+    words: str = ""  # its heading; default: its name
     unit: str = ""
-    form: str = ".6g"
-    missing: str = "nan"
+    form: str = ".6g"  # of a number for a reader; files have all digits
+    missing: str = "nan"  # text in place of nan
+    # Text between it and the column before it, in whose cell it stands, such as an error or the end of an
+    # interval; where it is nan, the other stands alone. Default: it has cells of its own.
     between: str = ""
-    error: Any = None
+    error: Any = None  # of each number, which is shown to the second digit of its error
 
     @property
     def suffix(self) -> str:
@@ -81,16 +62,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Table:
-    """Columns of one length under a title and facts.
-
-    Parameters
-    ----------
-    columns : tuple of Column, optional
-        Its columns.
-    title : str, optional
-        Its title.
-    facts : sequence of (str, str), optional
-        Name and text of what stands above the columns.
+    """Columns of one length under a title and facts, each a name and a text.
 
     Examples
     --------
@@ -170,15 +142,7 @@ class Table:
         return f"<table><thead><tr>{above}</tr></thead><tbody>{below}</tbody></table>"
 
     def write(self, path: str | Path, *, comment: str = "") -> None:
-        """Write it as CSV: names of the columns with units, then rows that read back to the last bit.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file; never left half-written.
-        comment : str, optional
-            A line above the names.
-        """
+        """Write it as CSV, whole or not at all: a comment, names with units, then rows to the last bit."""
         with (
             whole_file(Path(path)) as unfinished,
             open(unfinished, "w", newline="", encoding="utf-8") as file,
@@ -189,13 +153,7 @@ class Table:
             writer.writerows(zip(*(column.values for column in self.columns), strict=True))
 
     def to_dataframe(self) -> Any:
-        """Return the same as a `pandas.DataFrame`.
-
-        Raises
-        ------
-        ImportError
-            If pandas is not installed.
-        """
+        """Return the same as a `pandas.DataFrame`."""
         pandas = optional("pandas", "to_dataframe")
         return pandas.DataFrame({column.name: column.values for column in self.columns})
 

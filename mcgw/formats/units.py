@@ -70,27 +70,10 @@ METRES = {name: float(factor) for name, factor in (_METRIC | _NAMED).items()} | 
 
 
 def parse(text: str, unit: str, name: str = "") -> float:
-    """Read a positive number with a unit.
+    """Read a positive number with its unit, or without one in the SI unit, a key of `EXAMPLES`; rounded once.
 
-    Parameters
-    ----------
-    text : str
-        A number, then its unit, or nothing for the SI unit itself. Squares and reciprocals as ``mm^2``,
-        ``mm²``, ``1/mm^2`` or ``mm^-2``.
-    unit : str
-        SI unit of the result, a key of `EXAMPLES`; "1" is a fraction, which may be in %.
-    name : str, optional
-        Name of the option or key, for the message.
-
-    Returns
-    -------
-    float
-        In the SI unit, rounded once.
-
-    Raises
-    ------
-    ValueError
-        If it is not a positive finite number with such a unit.
+    Squares and reciprocals are ``mm^2``, ``mm²``, ``1/mm^2`` or ``mm^-2``; "1" is a fraction, which may be in
+    %. Anything else is a ValueError, which begins with the name of the option or key.
 
     Examples
     --------

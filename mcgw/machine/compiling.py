@@ -32,19 +32,12 @@ def njit(**options: Any) -> Callable[[Any], Any]:
     """Return `numba.njit` of these options; where no compiled loop can be kept, that is only said.
 
     All loops let go of Python's lock and divide as NumPy does.
-
-    Parameters
-    ----------
-    **options
-        Those of `numba.njit`.
     """
-    options = {"nogil": True, "error_model": "numpy", **options}
-
-    def decorate(function: Any) -> Any:
-        kept = bool(options.get("cache") and loops_folder())
-        return numba.njit(**{**options, "cache": kept})(function)
-
-    return decorate
+    kept = bool(options.get("cache") and loops_folder())
+    decorator: Callable[[Any], Any] = numba.njit(
+        **{"nogil": True, "error_model": "numpy", **options, "cache": kept}
+    )
+    return decorator
 
 
 @cache

@@ -13,13 +13,7 @@ _MOST = 2**63 - 1
 
 
 def check_memory(what: str, size: int) -> None:
-    """Refuse work that needs more memory than there is.
-
-    Raises
-    ------
-    StoreError
-        With both numbers.
-    """
+    """Refuse work that needs more memory than there is."""
     if size < 2**24:  # bytes; looking up what is available takes half a millisecond
         return
     memory = memory_available()

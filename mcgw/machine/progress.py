@@ -18,12 +18,7 @@ def told(progress: Progress, unit: str) -> Iterator[Tell]:
     """Give the function to call with ``(done, total)``, from ``progress=`` of any call.
 
     True draws a bar that counts in `unit`, at the rate of this call, without earlier work; None does so on a
-    terminal that is `watched`; a function is called; False does nothing.
-
-    Raises
-    ------
-    ValueError
-        If `progress` is something else.
+    terminal that is `watched`; a function is called; False does nothing. Anything else is a ValueError.
     """
     if progress is None:
         progress = waited_for()

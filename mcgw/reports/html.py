@@ -30,13 +30,7 @@ from mcgw.statistics.comparison import compare
 _PROVENANCE = ("digest", "seed", "sampler", "date", "versions", "commit", "cpu")
 _FEW_HEIGHTS, _FEWEST = 3e6, 20  # drawn at once for all pressures of a page, where they are drawn
 _PRESSURES = 7  # of the table and of the curves, at most
-_PER_AREA = (  # name, factor from SI, title, unit
-    ("area", 100, "Real contact area", "%"),
-    ("stiffness", 1e-12, "Normal stiffness", "MPa/µm"),
-    ("contact_conductance", 1, "Contact conductance", ""),
-    ("conductance", 1, "Contact conductance times ρ", "1/m"),
-)
-_OF_JOINT = {"gap_conductance": "Gap conductance", "joint_conductance": "Joint conductance"}
+_OF_JOINT = ("gap_conductance", "joint_conductance")
 _LIST = re.compile(r"\[\n([^\]]*)\]")  # of the scene as TOML, each shown on one line
 
 
@@ -181,14 +175,21 @@ def _draw_specimens(pressure: Array, mean: Array, std: Array, axis: Any) -> None
 
 def _asked(scene: Scene) -> Iterator[tuple[str, float, str, str]]:
     """Name, factor from SI, title and label of the answers to the scene's quantities."""
-    area = scene.surface.nominal_area
-    held = {"contact_conductance" if name == "conductance_si" else name for name in scene.quantities}
+    area, asked = scene.surface.nominal_area, scene.quantities
     conducted = scene.quantity("contact_conductance").unit.replace("^2", "²")
     yield "separation", 1.0, "Load: pressure at a separation", "separation d/σ"
-    for name, factor, title, unit in _PER_AREA:
-        if name in held and not (name == "conductance" and "contact_conductance" in held):
-            per = 1.0 if name == "contact_conductance" else area
-            symbol = quantity_of("conductance_si" if name == "contact_conductance" else name).symbol
-            yield name, factor / per, title, f"{symbol}/Aₙ ({unit or conducted})"
-    for name in filter(_OF_JOINT.__contains__, scene.of_joint):
-        yield name, 1.0, _OF_JOINT[name], f"{quantity_of(name).symbol} ({conducted})"
+    if "area" in asked:
+        yield "area", 100 / area, "Real contact area", _per_area("area", "%")
+    if "stiffness" in asked:
+        yield "stiffness", 1e-12 / area, "Normal stiffness", _per_area("stiffness", "MPa/µm")
+    if "conductance_si" in asked:
+        yield "contact_conductance", 1.0, "Contact conductance", _per_area("conductance_si", conducted)
+    elif "conductance" in asked:
+        yield "conductance", 1 / area, "Contact conductance times ρ", _per_area("conductance", "1/m")
+    for name in (each for each in scene.of_joint if each in _OF_JOINT):
+        title = name.replace("_", " ").capitalize()
+        yield name, 1.0, title, f"{quantity_of(name).symbol} ({conducted})"
+
+
+def _per_area(name: str, unit: str) -> str:
+    return f"{quantity_of(name).symbol}/Aₙ ({unit})"
