@@ -22,22 +22,10 @@ class Grid:
     A load P at one point presses the surface down by ``P/(pi E*)`` times `potential` at another one.
     Displacements count from their mean: the potential is the sum over all images in a neutral background
     (Ewald).
-
-    Parameters
-    ----------
-    shape : (int, int)
-        Rows and columns.
-    size : (float, float)
-        Extent along x and y, m.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than 46 points along the shorter side.
     """
 
-    shape: tuple[int, int]
-    size: tuple[float, float]
+    shape: tuple[int, int]  # rows and columns, 46 or more along the shorter side
+    size: tuple[float, float]  # extent along x and y, m
 
     def __post_init__(self) -> None:
         if min(self.size) / max(self.pixel) < _FEWEST:

@@ -30,27 +30,13 @@ _STEP = 1.02  # from the pressure to that at which stiffness is found
 
 @dataclass(frozen=True)
 class Pressed:
-    """A periodic map, and the pressure on it or the plane's distance from it.
+    """A periodic map, and the pressure on it or the plane's distance from it."""
 
-    Parameters
-    ----------
-    heights : ndarray
-        m, shape (rows, columns); about their mean.
-    size : (float, float)
-        Extent along x and y, m.
-    E_star : float
-        Composite modulus, Pa.
-    pressure : float, optional
-        Load per nominal area, Pa.
-    separation : float, optional
-        Instead: of the plane from the mean plane of the deformed surface, which is the mean gap, m.
-    """
-
-    heights: Array
-    size: tuple[float, float]
-    E_star: float
-    pressure: float = math.nan
-    separation: float | None = None
+    heights: Array  # m, shape (rows, columns); about their mean
+    size: tuple[float, float]  # extent along x and y, m
+    E_star: float  # composite modulus, Pa
+    pressure: float = math.nan  # load per nominal area, Pa
+    separation: float | None = None  # instead: of the plane from the mean plane of the deformed surface, m
 
     @property
     def load(self) -> float:
@@ -129,13 +115,7 @@ def located(pressed: Pressed) -> Values:
 
 
 def boundary_elements(pressed: Pressed) -> Values:
-    """Solve the elastic half-space by Tamaas (Polonsky, Keer, Rey); area less half of the rim's pixels.
-
-    Raises
-    ------
-    RunError
-        If Tamaas is not installed, or stops before its tolerance.
-    """
+    """Solve the elastic half-space by Tamaas (Polonsky, Keer, Rey); area less half of the rim's pixels."""
     try:
         import tamaas
     except ImportError:

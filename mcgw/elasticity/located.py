@@ -36,41 +36,19 @@ Push = Callable[[Array], Array]  # how far loads in N press down each summit, m
 
 @dataclass(frozen=True)
 class Balance:
-    """Spots in balance under a rigid plane.
+    """Spots in balance under a rigid plane."""
 
-    Parameters
-    ----------
-    separation : float
-        Of the plane from the mean plane of the deformed surface, m.
-    penetrations : ndarray
-        Of each summit, m; not positive where it does not touch.
-    stiffness : float
-        ``-dP/dd`` of all of them, which give way to each other, N/m.
-    share : float
-        Of the interaction: 1, or less where no balance was found with all of it.
-    """
-
-    separation: float
-    penetrations: Array
-    stiffness: float
-    share: float
+    separation: float  # of the plane from the mean plane of the deformed surface, m
+    penetrations: Array  # of each summit, m; not positive where it does not touch
+    stiffness: float  # -dP/dd of all of them, which give way to each other, N/m
+    share: float  # of the interaction: 1, or less where no balance was found with all of it
 
 
 def balanced(spots: Spots, places: Ints, grid: Grid, separation: float, load: float | None = None) -> Balance:
-    """Find the balance of spots at points of a grid, at a separation or under a load.
+    """Find the balance of spots at points of a grid, at a separation in m or under a load in N.
 
-    Parameters
-    ----------
-    spots : Spots
-        What each does alone, shape (n,).
-    places : ndarray of int
-        Rows and columns, shape (2, n), no two alike.
-    grid : Grid
-        Where they lie.
-    separation : float
-        m; below the highest summit. With a load: that of the spots alone.
-    load : float, optional
-        N.
+    No two of their `places`, rows and columns of shape (2, n), are alike. The `separation` is below the
+    highest summit; with a load it is that of the spots alone.
 
     Examples
     --------
@@ -122,12 +100,7 @@ def beyond_point(distance: Array, squared_radius: Array) -> Array:
 
     of which 1/r is taken off. Between two spots a is that of both, so that the potential is mutual:
     ``a^2 = 1.125 (a_i^2 + a_j^2)``; averaged over both contacts, 1 in place of 1.125 is exact to the
-    second order in a/r.
-
-    Parameters
-    ----------
-    distance, squared_radius : ndarray
-        r > 0 in m, a^2 > 0 in m^2.
+    second order in a/r. Both are in m and m^2, above 0.
     """
     x = distance**2 / squared_radius
     beyond = np.maximum(x, 1.0)

@@ -22,24 +22,12 @@ FEWEST = 4  # maps a term: fewer tell no variance
 
 @dataclass(frozen=True)
 class Design:
-    """Which levels to use, on how many maps.
+    """Which levels to use, on how many maps."""
 
-    Parameters
-    ----------
-    chain : tuple of int
-        Levels that are used, from cheap to dear.
-    maps : tuple of int
-        Of each term: the first level's mean, then differences.
-    cost : float
-        What they are expected to cost together, in the unit of the levels' costs.
-    plain : float
-        What the dearest level alone would cost for the same error.
-    """
-
-    chain: tuple[int, ...]
-    maps: tuple[int, ...]
-    cost: float
-    plain: float
+    chain: tuple[int, ...]  # levels that are used, from cheap to dear
+    maps: tuple[int, ...]  # of each term: the first level's mean, then differences
+    cost: float  # what they are expected to cost together, in the unit of the levels' costs
+    plain: float  # what the dearest level alone would cost for the same error
 
 
 def terms_of(chain: tuple[int, ...]) -> list[tuple[int, ...]]:
@@ -55,16 +43,9 @@ def difference(values: Array) -> Array:
 def design(pilot: Array, costs: Sequence[float], rel_err: float, solves: int | None = None) -> Design:
     """Find the chain that costs least.
 
-    Parameters
-    ----------
-    pilot : ndarray
-        Shape (maps, levels, quantities), the dearest level last.
-    costs : sequence of float
-        Of one map at each level.
-    rel_err : float
-        Half the width of the 95 % interval over the mean, which no quantity is to exceed.
-    solves : int, optional
-        Instead: how many solves of the dearest level there may be.
+    The `pilot` has the shape (maps, levels, quantities), the dearest level last; `costs` are those of one map
+    at each level; `rel_err` is half the width of the 95 % interval over the mean, which no quantity is to
+    exceed; or there may be so many `solves` of the dearest level.
     """
     top = pilot.shape[1] - 1
     scale = np.abs(pilot[:, top].mean(axis=0)) * rel_err / student.ppf(0.975, 20)
@@ -90,17 +71,11 @@ def design(pilot: Array, costs: Sequence[float], rel_err: float, solves: int | N
 
 @dataclass(frozen=True)
 class Mean:
-    """Means with their uncertainty, arrays of shape (quantities,).
-
-    Parameters
-    ----------
-    mean, stderr, degrees : ndarray
-        Estimate, its standard error, and degrees of freedom of Student's distribution.
-    """
+    """Means with their uncertainty, arrays of shape (quantities,)."""
 
     mean: Array
-    stderr: Array
-    degrees: Array
+    stderr: Array  # standard errors
+    degrees: Array  # of freedom of Student's distribution
 
     def interval(self, level: float = 0.95) -> tuple[Array, Array]:
         """Return the ends of the confidence interval."""
@@ -109,14 +84,9 @@ class Mean:
 
 
 def mean_of(samples: Sequence[Array], population: int | None = None) -> Mean:
-    """Sum of the terms' means.
+    """Sum of the terms' means, of samples of shape (maps, quantities) each.
 
-    Parameters
-    ----------
-    samples : sequence of ndarray
-        Of each term, shape (maps, quantities).
-    population : int, optional
-        How many maps there are in all, of which those of a term were chosen without replacement.
+    Those of a term may be chosen without replacement from a `population` of maps.
     """
     variances = []
     for x in samples:

@@ -21,29 +21,12 @@ _MOST_BYTES = 2**28  # of a file: a million solves
 
 
 class Solves:
-    """Values of levels on maps, each solved once.
+    """Values of levels on maps, by their numbers, each solved once.
 
-    Parameters
-    ----------
-    maps : Maps
-        The maps, by their numbers.
-    held : mapping of str to float
-        The pressure (Pa) or the separation (m).
-    E_star : float
-        Composite modulus, Pa.
-    seed : int
-        Of the maps.
-    quantities : sequence of str
-        Those that are asked for, in this order.
-    path : Path, optional
-        File to which each solve is added, and whose solves are not made again. No other process may add to it
-        meanwhile. Lines that are damaged are named in one warning and left out: their maps are solved again.
-
-    Raises
-    ------
-    StoreError
-        If the file holds something else than solves of these maps at this pressure, separation, modulus and
-        seed.
+    At the pressure (Pa) or the separation (m) that is `held`. A solve is added to the file of the `path`, if
+    there is one, to which no other process may add meanwhile, and those of the file are not made again. Lines
+    that are damaged are named in one warning and left out. StoreError if the file holds something else than
+    solves of these maps at this pressure, separation, modulus and seed.
     """
 
     def __init__(

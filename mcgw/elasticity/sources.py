@@ -21,24 +21,12 @@ _MOST_POINTS = 2048  # a side
 
 @dataclass(frozen=True)
 class Maps:
-    """Periodic maps by number.
+    """Periodic maps by number."""
 
-    Parameters
-    ----------
-    heights : callable
-        Heights of one, m: a pure function of its number and a seed.
-    size : (float, float)
-        Of each, m.
-    words : str
-        What they are.
-    number : int, optional
-        How many there are; None: as many as one likes.
-    """
-
-    heights: Callable[[int, int], Array]
-    size: tuple[float, float]
-    words: str
-    number: int | None = None
+    heights: Callable[[int, int], Array]  # of one, m: a pure function of its number and a seed
+    size: tuple[float, float]  # of each, m
+    words: str  # what they are
+    number: int | None = None  # how many there are; None: as many as one likes
 
 
 def maps_of(source: "Scene | Spectrum | Topography | str | Path | Sequence[Topography | str | Path]") -> Maps:

@@ -23,17 +23,6 @@ class Spots:
 
         a = radius (delta/depth)^(1/n),    P = 2 E* n/(n + 1) a delta,    dP/ddelta = 2 E* a.
 
-    Parameters
-    ----------
-    heights : ndarray
-        Of the summits, m.
-    radii, depths : ndarray
-        Of one contact on each: its radius, and its penetration there, m.
-    powers : ndarray
-        n; 2 for a sphere.
-    E_star : float
-        Composite modulus, Pa.
-
     Examples
     --------
     >>> one = Spots.hertz(np.zeros(1), np.array([1e-5]), 1e9)
@@ -41,11 +30,11 @@ class Spots:
     1.0
     """
 
-    heights: Array
-    radii: Array
-    depths: Array
-    powers: Array
-    E_star: float
+    heights: Array  # of the summits, m
+    radii: Array  # of one contact on each, m
+    depths: Array  # penetration at which each contact has this radius, m
+    powers: Array  # n; 2 for a sphere
+    E_star: float  # composite modulus, Pa
 
     @classmethod
     def hertz(cls, heights: Array, radii: Array, E_star: float) -> "Spots":
@@ -98,18 +87,7 @@ def fallen(used: Topography, summits: Summits, which: Ints, spots: Spots, radii:
 
         depth = a int_0^a f'(r)/sqrt(a^2 - r^2) dr,    P = 2 E* int_0^a r^2 f'(r)/sqrt(a^2 - r^2) dr.
 
-    Parameters
-    ----------
-    used : Topography
-        Periodic.
-    summits : Summits
-        Of this map.
-    which : ndarray of int
-        Numbers of those that the spots are of, shape (n,).
-    spots : Spots
-        Whose heights and modulus stay.
-    radii : ndarray
-        Of contacts, m, shape (n,).
+    The spots are those on the summits of these numbers; their heights and modulus stay. `radii` are in m.
     """
     t, angle = np.arange(_STEPS + 1) / _STEPS, 2 * math.pi * np.arange(_RAYS) / _RAYS
     r = radii[:, None] * t

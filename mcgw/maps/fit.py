@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -186,20 +187,18 @@ class Fit(Drawn):
 
 
 def fit_prepared(ready: Prepared) -> Fit:
-    """Estimate eta, R and sigma of a prepared map.
+    """Estimate eta, R and sigma of a prepared map; ValueError if it has no summit, or too large a sigma.
 
     Standard errors are those of a jackknife over the sub-areas, or those that follow from the number of
     waves on the map, if larger: sub-areas share its long waves.
-
-    Raises
-    ------
-    ValueError
-        If the map has no summit or is too small, or an estimate of sigma is more than its peak to valley.
     """
     used, form, across = ready.used, ready.asked.form, ready.asked.parts
 
     def count(across: int, sums_of: Callable[..., Summits] = summit_sums_of) -> Summits:
         return _without_summit_form(sums_of(used, across=across, seen=ready.seen), form, used.size)
+
+    def heights(part: Any = ...) -> Array:
+        return np.asarray(used.heights[part] if ready.seen is None else used.heights[part][ready.seen[part]])
 
     counted = count(across)
     number = counted.heights.size
@@ -218,8 +217,7 @@ def fit_prepared(ready: Prepared) -> Fit:
     told = by_moments(counted)
     estimates = {"moments": Estimate.of([told[name] for name in SUMMITS], waves)}
     blur = math.hypot(max(used.pixel), _BLUR * (ready.asked.cutoff or 0.0))
-    heights = used.heights if ready.seen is None else used.heights[ready.seen]
-    peak_to_valley = float(np.ptp(heights))
+    peak_to_valley = float(np.ptp(heights()))
     if number >= _FEWEST:
         fewer = max(min(across, math.isqrt(number // _A_PART)), _LEAST_ACROSS)
         fine = counted if counted.parts == fewer**2 else count(fewer)
@@ -237,7 +235,6 @@ def fit_prepared(ready: Prepared) -> Fit:
     if found := estimates.get("caps"):
         shown = visible(found.overlap, blur / math.sqrt(2 * found.radius.value * found.sigma.value))
     inside = (slice(None) if used.periodic else slice(EDGE, -EDGE),) * 2
-    heights = used.heights[inside] if ready.seen is None else used.heights[inside][ready.seen[inside]]
     squares = mean_squares(counted)
     x, y = ((a - b) / 2 for a, b in zip(ready.levelled.size, used.size, strict=True))  # of equal margins
     return Fit(
@@ -250,9 +247,7 @@ def fit_prepared(ready: Prepared) -> Fit:
         mean_squares=squares,
         form=form,
         waves=waves,
-        roughness=roughness_of(
-            used.heights[inside] if ready.seen is None else used.heights[inside][ready.seen[inside]]
-        ),
+        roughness=roughness_of(heights(inside)),
         notes=ready.notes,
     )
 

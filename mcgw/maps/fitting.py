@@ -171,18 +171,19 @@ def _pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
     """
     first, areas = fits[0], np.array([fit.area for fit in fits])
     weights = areas / areas.sum()
-    m0, m2, m4 = np.array([[getattr(fit.moments, x) for x in _MOMENTS] for fit in fits]).T
-    moments = SpectralMoments(*(float(weights @ m) for m in (m0, m2, m4)))
-    cubes = weights * (m0 / moments.m0) ** 1.5
-    skewness, errors = np.array([fit.skewness for fit in fits]).T
-    a, q, sk, ku = np.array([fit.roughness for fit in fits]).T
-    rms = math.sqrt(weights @ q**2)
-    rough = weights @ np.transpose([a, sk * (q / rms) ** 3, ku * (q / rms) ** 4])
-    listed = [fit.listed for fit in fits]
+    moments = SpectralMoments(
+        *(weights @ [[getattr(fit.moments, x) for x in _MOMENTS] for fit in fits]).tolist()
+    )
+    cubes = [np.array(fit.skewness) * (fit.moments.m0 / moments.m0) ** 1.5 for fit in fits]
+    skewness, errors = (weights[:, None] * cubes).T
+    each = [fit.roughness for fit in fits]
+    a, square, cube, fourth = weights @ [[r.a, r.q**2, r.sk * r.q**3, r.ku * r.q**4] for r in each]
+    rms = math.sqrt(square)
+    listed, waves = [fit.listed for fit in fits], [fit.waves for fit in fits]
     points = np.array([x.area / x.sums[0].sum() for x in listed])  # area of each
     sums = [x.sums.sum(axis=1) * size for x, size in zip(listed, points / points[0], strict=True)]
     visible = [fit.visible for fit in fits if fit.visible is not None]
-    waves, squares = [fit.waves for fit in fits], [[*fit.mean_squares.values()] for fit in fits]
+    squares = weights @ [[*fit.mean_squares.values()] for fit in fits]
     return replace(
         first,
         moments=moments,
@@ -194,19 +195,19 @@ def _pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
             for x in first.estimates
             if all(x in fit.estimates for fit in fits)
         },
-        skewness=(float(cubes @ skewness), float(np.linalg.norm(cubes * errors))),
+        skewness=(float(skewness.sum()), float(np.linalg.norm(errors))),
         listed=replace(
             Summits.together(listed, np.transpose(sums)),
             tile=np.repeat(np.arange(len(fits)), [x.heights.size for x in listed]),
         ),
         visible=Visible(*(weights @ visible).tolist()) if len(visible) == len(fits) else None,
-        mean_squares=dict(zip(first.mean_squares, (weights @ squares).tolist(), strict=True)),
+        mean_squares=dict(zip(first.mean_squares, squares.tolist(), strict=True)),
         waves=Waves(
             {x: _together([each.spreads[x] for each in waves], weights) for x in waves[0].spreads},
             sum(each.independent for each in waves),
             np.tensordot(weights**2, [each.covariance for each in waves], 1),
         ),
-        roughness=Roughness(float(rough[0]), rms, float(rough[1]), float(rough[2])),
+        roughness=Roughness(float(a), rms, float(cube / rms**3), float(fourth / rms**4)),
         maps=tuple(names),
         notes=tuple(f"{name}: {line}" for name, fit in zip(names, fits, strict=True) for line in fit.notes),
         cautions=(),
