@@ -22,7 +22,6 @@ from mcgw.scene.kinds import argument
 from mcgw.scene.scene import Scene
 from mcgw.store.lock import locked, parts_of
 
-_PILOT = 8
 _UNITS = {"area": "m^2", "stiffness": "N/m", "conductance": "m", "mean_gap": "m", "pressure": "Pa"}
 
 
@@ -102,7 +101,7 @@ def elastic(
     quantities: Sequence[str] | None = None,
     rel_err: float = 0.02,
     solves: int | None = None,
-    pilot: int = _PILOT,
+    pilot: int = 8,
     seed: int = 1,
     path: str | Path | None = None,
     progress: Progress = None,

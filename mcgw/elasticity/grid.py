@@ -11,7 +11,6 @@ from scipy.special import erfc
 from analytic.arrays import Array, Ints
 
 # Ewald's two sums, with so narrow a split that only the nearest image counts in the first: erfc(6) is 2e-17.
-_SPLIT = 12.0  # over the shorter side
 _FEWEST = 46  # points along the shorter side, at which the second sum has no more than the grid's waves
 
 
@@ -45,7 +44,7 @@ class Grid:
         dx, dy = self.pixel
         r = np.hypot(self.size[0] * fft.fftfreq(columns), self.size[1] * fft.fftfreq(rows)[:, None])
         r[0, 0] = 1.0
-        split = _SPLIT / min(self.size)
+        split = 12.0 / min(self.size)
         near = erfc(split * r) / r
         near[0, 0] = -2 * split / math.sqrt(math.pi)
         k = 2 * math.pi * np.hypot(fft.rfftfreq(columns, dx), fft.fftfreq(rows, dy)[:, None])

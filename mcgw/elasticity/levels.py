@@ -24,7 +24,6 @@ Values = dict[str, float]
 # Tribol. Int. 114 (2017) 161; recalled).
 _OVERHANG = (math.pi - 1 + math.log(2)) / 24
 _TOLERANCE, _MOST_STEPS = 1e-6, 20_000  # of Tamaas, by its own measure
-_FITS = 2  # the second within contacts as wide as the first ones make them
 _STEP = 1.02  # from the pressure to that at which stiffness is found
 
 
@@ -69,7 +68,7 @@ class Pressed:
             raise RunError("a map has no summit; give a larger one, or a shorter cutoff")
         return counted
 
-    def touching(self, fits: int = _FITS) -> tuple[Spots, Ints]:
+    def touching(self, fits: int = 2) -> tuple[Spots, Ints]:
         """Spots that may touch, fitted so many times to the map around them, and their rows and columns.
 
         Those down to as far below the plane as the highest one, if none felt another one, rises above it.

@@ -25,10 +25,6 @@ from mcgw.elasticity.spots import Spots
 # those of a contact whose squared radius is this times the sum of theirs.
 _NEUTRAL = 1.125
 _REACH = 4.0  # contact radii of spots, beyond which they are point loads to each other
-_SHARES = (0.5, 1.0)  # of the interaction, one after the other: from spots alone, a whole one is a leap
-_BALANCED = 1e-11  # what may be left over, of the deepest penetration and of the load
-_STEPS, _ASTRAY = 40, 1e3  # of Newton, and what is left over where they lead nowhere
-_CLOSE, _PRODUCTS = 1e-9, 200  # of conjugate gradients
 _DENSE = 2500  # spots, beyond which Fourier series sum faster than a matrix
 
 Push = Callable[[Array], Array]  # how far loads in N press down each summit, m
@@ -59,7 +55,7 @@ def balanced(spots: Spots, places: Ints, grid: Grid, separation: float, load: fl
     """
     push, start = interaction(spots, places, grid, separation), spots.heights - separation
     found = Balance(separation, start, float(spots.slopes(start).sum()), 0.0)
-    for share in _SHARES:
+    for share in (0.5, 1.0):  # from spots alone, a whole interaction is a leap
         nearer = _newton(spots, push, found, load, share)
         if nearer is None:
             break
@@ -111,15 +107,15 @@ def beyond_point(distance: Array, squared_radius: Array) -> Array:
 def _newton(spots: Spots, push: Push, start: Balance, load: float | None, share: float) -> Balance | None:
     """Balance under a share of the interaction, if steps from another balance lead to one."""
     deepest, d, delta = float(start.penetrations.max()), start.separation, start.penetrations
-    for _ in range(_STEPS):
+    for _ in range(40):
         slopes, loads = spots.slopes(delta), spots.loads(delta)
         misfit = delta - spots.heights + d + share * push(loads)
         missing = 0.0 if load is None else load - float(loads.sum())
         size = max(float(np.abs(misfit).max()) / deepest, abs(missing) / load if load else 0.0)
-        if not slopes.any() or size > _ASTRAY:
+        if not slopes.any() or size > 1e3:  # steps lead nowhere
             return None
         under = _answered(slopes, push, share, np.ones(delta.shape))  # more load as the plane sinks by 1 m
-        if size < _BALANCED:
+        if size < 1e-11:  # of the deepest penetration and of the load
             return Balance(d, delta, float(under.sum()), share)
         own = _answered(slopes, push, share, -misfit)
         lower = 0.0 if load is None else (missing - float(own.sum())) / float(under.sum())
@@ -138,5 +134,5 @@ def _answered(slopes: Array, push: Push, share: float, sinking: Array) -> Array:
 
     whole = LinearOperator(shape, matvec=sunk, dtype=float)
     alone = diags_array(slopes[on])
-    loads[on] = cg(whole, sinking[on], rtol=_CLOSE, maxiter=_PRODUCTS, M=alone)[0]
+    loads[on] = cg(whole, sinking[on], rtol=1e-9, maxiter=200, M=alone)[0]
     return loads

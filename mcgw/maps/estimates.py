@@ -24,12 +24,9 @@ METHODS = {
     "caps": "counted summits, corrected for hidden ones",
 }
 _UNSURE = 0.25  # share of a correction that is uncertain, measured for hidden caps and summits between pixels
-_ORDER = 3  # losses scale as the pixel squared: one pixel loses a third of the difference between two and one
-_FLAT = 0.5  # share of the median curvature
 CROWDED = 0.05  # eta R sigma, from which one summit in six is hidden: the asperities are no longer apart
 _REACH = 9.0
 _X, _W = leggauss(200)  # heights over their reach, by the rule of Gauss and Legendre
-_MOST = 10.0
 
 
 class Roughness(NamedTuple):
@@ -126,7 +123,7 @@ def by_summits(fine: Summits, coarse: Summits) -> Array:
     """Summits as they were counted over every point, and those that lie between pixels.
 
     A grid shows too few summits, too blunt: at eight pixels to the shortest wave it loses 1 to 3 %. What
-    every second point loses over that, by three, is added (Richardson).
+    every second point loses over that, by three, is added (Richardson): losses go as the pixel squared.
     """
 
     def counted(t: Summits) -> Array:
@@ -134,7 +131,7 @@ def by_summits(fine: Summits, coarse: Summits) -> Array:
 
     def found(fine: Summits, coarse: Summits) -> Array:
         values = counted(fine)
-        eta, curvature, sigma = values + (values - counted(coarse)) / _ORDER
+        eta, curvature, sigma = values + (values - counted(coarse)) / 3
         return np.array([eta, 1 / curvature, sigma])
 
     pairs = jackknife(found, fine, coarse)
@@ -151,7 +148,7 @@ def by_caps(counted: Summits, blur: float) -> Array | None:
 
     def found(t: Summits, blur: float) -> Array:
         median = np.median(t.bends)
-        caps = t.heights[t.bends > _FLAT * median]  # lower ones are ripples in the valleys
+        caps = t.heights[t.bends > 0.5 * median]  # flatter ones are ripples in the valleys
         all_caps = _unhidden(caps.size / t.area, float(1 / median), float(caps.std(ddof=1)), blur)
         return np.full(3, np.nan) if all_caps is None else np.array([all_caps[0], 1 / median, all_caps[1]])
 
@@ -216,7 +213,7 @@ def _unhidden(eta: float, radius: float, sigma: float, blur: float) -> tuple[flo
         seen = visible(overlap, reduced)
         return overlap * seen.share * seen.std - eta * radius * sigma
 
-    grid = np.geomspace(1e-9, _MOST, 60)
+    grid = np.geomspace(1e-9, 10.0, 60)
     above = [x for x in grid if misfit(float(x)) > 0]
     if not above:
         return None

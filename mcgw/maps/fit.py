@@ -37,10 +37,7 @@ from mcgw.maps.waves import Uncertain, Waves, uncertain, waves_of
 _BLUR = 0.3
 # Sub-areas crossed by long waves underestimate errors, and few sub-areas estimate them badly.
 _FEWEST = 8  # summits on a map, at least, for counting
-_A_PART, _LEAST_ACROSS = 4, 2  # summits in a sub-area on average, for their own errors
-_A_LITTLE, _FEW_ACROSS = 2, 3  # the same for errors of the moments
-_OF_QUARTILES = 1 / 1.349
-_ONE_RADIUS = 0.17  # half of the spread of curvatures of Gaussian surfaces
+_A_LITTLE = 2  # summits in a sub-area on average, for errors of the moments
 
 
 @dataclass(frozen=True, repr=False)
@@ -147,7 +144,7 @@ class Fit(Drawn):
     def spread_of_curvatures(self) -> float:
         """Relative standard deviation of summit curvatures, from their quartiles as if they were Gaussian."""
         low, median, high = np.percentile(self.curvatures, (25, 50, 75))
-        return float(_OF_QUARTILES * (high - low) / median)
+        return float((high - low) / 1.349 / median)
 
     @property
     def best(self) -> str:
@@ -159,7 +156,7 @@ class Fit(Drawn):
         """
         if "summits" not in self.estimates:
             return "moments"
-        one_radius = "caps" in self.estimates and self.spread_of_curvatures < _ONE_RADIUS
+        one_radius = "caps" in self.estimates and self.spread_of_curvatures < 0.17  # half of a Gaussian one
         return "caps" if one_radius else "summits"
 
     def sheet(self) -> Table:
@@ -206,7 +203,7 @@ def fit_prepared(ready: Prepared) -> Fit:
         form_too = ", or --form quadratic" if form_left(ready.levelled, form) else ""
         raise ValueError(f"the map has no summit; give a larger map or a shorter cutoff{form_too}")
     if number < _A_LITTLE * across**2:
-        counted = count(min(across, max(math.isqrt(number // _A_LITTLE), _FEW_ACROSS)))
+        counted = count(min(across, max(math.isqrt(number // _A_LITTLE), 3)))
     moments = moments_of(counted)
     if not (moments.m2 > SMALLEST and moments.sigma > 0):  # alpha contains its square
         raise ValueError(
@@ -219,7 +216,7 @@ def fit_prepared(ready: Prepared) -> Fit:
     blur = math.hypot(max(used.pixel), _BLUR * (ready.asked.cutoff or 0.0))
     peak_to_valley = float(np.ptp(heights()))
     if number >= _FEWEST:
-        fewer = max(min(across, math.isqrt(number // _A_PART)), _LEAST_ACROSS)
+        fewer = max(min(across, math.isqrt(number // 4)), 2)  # four summits in a sub-area on average
         fine = counted if counted.parts == fewer**2 else count(fewer)
         estimates["summits"] = Estimate.of(by_summits(fine, count(fewer, coarse_sums_of)), waves)
         caps = by_caps(fine, blur)

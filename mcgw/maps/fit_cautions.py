@@ -25,10 +25,6 @@ from mcgw.maps.topography import STEEPEST, Profile
 _PIXELS = 10.0  # pixels that a cutoff wavelength should have
 _RESOLVED = 0.05  # allowed ratio of two estimates of m4, reached at about ten pixels per wavelength
 _SKEW, _ALPHA, _APART = 0.3, 1.5, 1.2
-_FEW, _STREAKY = 100, 1.5
-_PEAKS, _UNSURE = 1.2, 0.2
-_NEAR = slice(1, 9)  # waves along a row that are nearly as long as those that do not change along it
-_ALTERNATE = -0.4  # correlation of second differences of neighbours: -2/3 of independent offsets
 LIMITS = {"range": 1e-3, "rounding": 0.05, "rows": 0.05, "columns": 0.05}  # shares that are let pass
 
 Found = tuple[Any, ...]  # a key of `WORDS`, and what its words take
@@ -161,11 +157,11 @@ def _of_the_fit(fit: Fit, use: str) -> Iterator[Found]:
         yield "skewness", skewness
     if fit.numbers["alpha"].value < _ALPHA:
         yield "alpha", fit.numbers["alpha"].value
-    if fit.lay > _STREAKY:
+    if fit.lay > 1.5:
         yield "lay", fit.lay
     if fit.agreement is not None and fit.agreement > _APART:
         yield "estimates", fit.agreement
-    if fit.summits.size < _FEW:
+    if fit.summits.size < 100:
         yield "summits", fit.summits.size
     used = use if use in fit.estimates else fit.best
     overlap, hidden = fit.estimates[used].overlap, " summits are as broad as they are far apart,"
@@ -190,11 +186,11 @@ def _of_profiles(fit: ProfileFit, profiles: Sequence[Profile], cutoff: float | N
         yield "cutoff of a profile", cutoff / spacing, _PIXELS
     if abs(fit.roughness.sk) > max(_SKEW, 6 * fit.numbers["m0"].relative):
         yield "skewness of a profile", fit.roughness.sk
-    if not 1 / _PEAKS < fit.peaks[0] / fit.peaks[1] < _PEAKS:
+    if not 1 / 1.2 < fit.peaks[0] / fit.peaks[1] < 1.2:
         yield "peaks", *fit.peaks
     if fit.moments.alpha < _ALPHA:
         yield "alpha of a profile", fit.moments.alpha
-    if (error := fit.numbers["sigma"].relative) >= _UNSURE:
+    if (error := fit.numbers["sigma"].relative) >= 0.2:
         yield "waves of a profile", 100 * error
 
 
@@ -243,12 +239,12 @@ def _offsets(ready: Prepared, axis: int) -> float:
     alternate as independent offsets do: grooves along the lines are as wide as several of them.
     """
     means = np.diff(ready.levelled.heights.mean(axis=1 - axis), 2)
-    if not float(means[1:] @ means[:-1]) < _ALTERNATE * float(means @ means):
+    if not float(means[1:] @ means[:-1]) < -0.4 * float(means @ means):  # -2/3 of independent offsets
         return 0.0
     bends = _second(np.moveaxis(ready.used.heights, axis, 0))
     power = np.mean(np.abs(fft.rfft(bends)) ** 2, axis=0)
     power[1:] *= 2
-    return float((power[0] - power[_NEAR].max()) / power.sum())
+    return float((power[0] - power[1:9].max()) / power.sum())  # waves nearly as long along a line
 
 
 def _second(z: Array) -> Array:

@@ -16,11 +16,7 @@ from mcgw.maps.waves import coarser
 
 ORDERS = {"none": -1, "plane": 1, "quadratic": 2, "cubic": 3, "quartic": 4}
 
-_REACH = 1.0  # of the filter's window, in cutoffs: beyond lies a share of 5e-7
 _COARSE, _FINE = 192, 1024  # points along each axis tell the longest waves, and a form
-_LONGEST = 2.3  # waves on the map; there are 20 such wave vectors
-_STRONGER, _COUNTS = 3.0, 0.05
-_WIDTH = 10.0  # lines, standard deviation: of waves as long as 53 lines half is kept
 
 
 def without_form(topography: Topography, form: Form) -> Topography:
@@ -33,18 +29,13 @@ def without_form(topography: Topography, form: Form) -> Topography:
         return topography
     z, order = topography.heights, ORDERS[form]
     y, x = (legvander((np.arange(n) + 0.5) / n * 2 - 1, order) for n in z.shape)
-    terms = [(a, b) for a in range(order + 1) for b in range(order + 1 - a)]
+    a, b = np.nonzero(np.add.outer(np.arange(order + 1), np.arange(order + 1)) <= order)  # degrees of y and x
     there = np.isfinite(z)
-    whole = bool(there.all())
-    projected = y.T @ (z if whole else np.where(there, z, 0.0)) @ x
+    projected = y.T @ (z if there.all() else np.where(there, z, 0.0)) @ x
     square_y, square_x = ((v[:, :, None] * v[:, None, :]).reshape(len(v), -1) for v in (y, x))
-    squares = np.outer(square_y.sum(axis=0), square_x.sum(axis=0)) if whole else square_y.T @ there @ square_x
-    gram = squares.reshape([order + 1] * 4)  # powers a and c of y, b and d of x
-    matrix = np.array([[gram[a, c, b, d] for c, d in terms] for a, b in terms])
-    found = np.linalg.lstsq(matrix, np.array([projected[a, b] for a, b in terms]), rcond=None)[0]
+    gram = (square_y.T @ there @ square_x).reshape([order + 1] * 4)  # degrees of y, twice, and of x, twice
     weights = np.zeros_like(projected)
-    for (a, b), value in zip(terms, found, strict=True):
-        weights[a, b] = value
+    weights[a, b] = np.linalg.lstsq(gram[a[:, None], a, b[:, None], b], projected[a, b], rcond=None)[0]
     return replace(topography, heights=z - y @ weights @ x.T, periodic=False)
 
 
@@ -90,16 +81,16 @@ def lowpass(topography: Topography, cutoff: float) -> Array:
 
 
 def _window(topography: Topography, cutoff: float) -> tuple[int, int]:
-    """Half its size along y and x, in points."""
+    """Half its size along y and x, in points: beyond a cutoff lies a share of 5e-7."""
     dx, dy = topography.pixel
-    return max(math.ceil(_REACH * cutoff / dy), 1), max(math.ceil(_REACH * cutoff / dx), 1)
+    return max(math.ceil(cutoff / dy), 1), max(math.ceil(cutoff / dx), 1)
 
 
 def without_offsets(topography: Topography, lines: LinesTo) -> tuple[Topography, float]:
     """Return a map whose lines are shifted by the medians of their differences; and the rms of the shifts, m.
 
     Medians of the differences between neighbouring lines add up to offsets, and to waves that run across all
-    lines. Those that a Gaussian window of ten lines lets pass are kept.
+    lines. Those that a Gaussian window of ten lines lets pass are kept: half of waves as long as 53 lines.
     """
     z = topography.heights if lines == "rows" else topography.heights.T
     level, last = np.zeros(len(z)), z[0]
@@ -108,7 +99,7 @@ def without_offsets(topography: Topography, lines: LinesTo) -> tuple[Topography,
         steps = steps[np.isfinite(steps)]
         level[j] = level[j - 1] + (np.median(steps) if steps.size else 0.0)
         last = z[j] if steps.size else last  # a line without heights is passed over
-    offsets = level - gaussian_filter1d(level, _WIDTH, mode="nearest")
+    offsets = level - gaussian_filter1d(level, 10.0, mode="nearest")
     shifted = z - offsets[:, None]
     heights = shifted if lines == "rows" else np.ascontiguousarray(shifted.T)
     return replace(topography, heights=heights), float(np.sqrt(np.mean(offsets**2)))
@@ -128,9 +119,9 @@ def form_left(topography: Topography, form: Form) -> tuple[float, float, Form] |
     left, z = coarse.heights - rest.heights, coarser(rest, _COARSE).heights
     power = np.abs(fft.fft2(z) / z.size) ** 2
     along, down = (fft.fftfreq(n) * n for n in z.shape[::-1])
-    longest = float(power[np.hypot(along, down[:, None]) < _LONGEST].sum())
+    longest = float(power[np.hypot(along, down[:, None]) < 2.3].sum())  # there are 20 such wave vectors
     variance = float(left.var())
     share = variance / float(topography.heights.var())
-    if share < _COUNTS or variance < _STRONGER * longest:
+    if share < 0.05 or variance < 3 * longest:
         return None
     return share, float(np.ptp(left)), more

@@ -79,14 +79,13 @@ def read_heights(
     with np.errstate(over="ignore", invalid="ignore"):  # of scales: a map refuses what comes of it
         heights = np.ascontiguousarray(_in_metres(path, raw.heights, metres_in(path, known), missing))
     plane = heights.ndim == 2
-    told = raw.pixel if plane else raw.places
-    if pixel is not None and (raw.pixel if plane else raw.lateral) is not None:
+    if pixel is not None and (raw.steps if plane else raw.lateral) is not None:
         what = "the size of a pixel" if plane else f"x in {raw.lateral}"
         raise ValueError(f"{path}: gives {what}; leave --pixel out")
-    if pixel is None and told is None:
+    if pixel is None and raw.steps is None:
         what = "size of a pixel" if plane else "distance between its points"
         raise ValueError(f"{path}: does not give the {what}; give --pixel")
-    lateral = np.asarray(pixel or metres_in(path, raw.lateral) * np.asarray(told))
+    lateral = np.asarray(pixel or metres_in(path, raw.lateral) * np.asarray(raw.steps))
     assumed = "" if known and (pixel or raw.lateral) else "m"
     if plane and 1 not in heights.shape:
         dx, dy = lateral.tolist()
@@ -147,7 +146,7 @@ def _read(path: Path, given: Given) -> Raw:
         if reader is read_text:
             raise refused from None
         raise ValueError(f"{refused}; {str(too).removeprefix(f'{path}: ')}") from None
-    if reader is read_text and found.heights.ndim == 2 and found.pixel is None:
+    if reader is read_text and found.heights.ndim == 2 and found.steps is None:
         raise refused
     return found
 

@@ -29,12 +29,8 @@ from mcgw.maps.topography import XYZ, ForeignError, Given, Raw, Topography, chec
 
 FILETYPE = "mcgw-surface"
 WRITTEN = (".npy", ".h5", ".sdf")
-_HEADER = struct.Struct("<8s10s12s12sHHddddBBB")
-_MOST_JSON = 2**16
 _MOST_POINTS = 65535  # along each axis: 16 bits
 _MOST_TEXT = 2**26  # bytes of a text, which it takes in whole
-_LARGEST = 3.4e38  # in the numbers of a file, which mark a missing point by the least of their type
-_PRINTABLE = bytes(range(32, 127)) + b"\t\r\n"
 
 
 def sidecar_of(path: Path) -> Path:
@@ -60,7 +56,7 @@ def read_npy(path: Path, given: Given) -> Raw:
     beside = sidecar_of(path)
     if not beside.is_file():
         raise ValueError(f"{path}: there is no {beside.name} with the size of a pixel; give --pixel")
-    data = read_bytes(beside, _MOST_JSON)
+    data = read_bytes(beside, 2**16)
     try:
         facts: Any = loads_json(data)
         pixel, periodic, unit = facts["pixel"], facts.get("periodic", False), facts.get("unit")
@@ -68,7 +64,7 @@ def read_npy(path: Path, given: Given) -> Raw:
         raise ValueError(f'{beside}: must hold "pixel": [dx, dy] in m: {error}') from None
     if unit not in (None, "m"):
         raise ValueError(f"{beside}: unit = {unit!r}: must be 'm'")
-    return Raw(array, unit, *_facts(beside, pixel, periodic), lateral="m")
+    return Raw(array, unit, *_facts(beside, pixel, periodic))
 
 
 def _write_h5(topography: Topography, path: Path, field: Asperities | None, scene: str) -> None:
@@ -97,23 +93,23 @@ def read_h5(path: Path, given: Given) -> Raw:  # noqa: ARG001
                 raise ForeignError(f"{path}: is not a {FILETYPE} file; it was not written by mcgw surface")
             data = file["height"]
             checked_shape(*data.shape, held=data.id.get_storage_size())
-            pixel, periodic = _facts(path, file.attrs["pixel"], file.attrs["periodic"])
+            facts = _facts(path, file.attrs["pixel"], file.attrs["periodic"])
             told = data.attrs.get("units")
             if data.size and not data.id.get_storage_size():
                 raise ValueError(f"{path}: its heights were never written")
-            return Raw(data[...], None if told is None else str(told), pixel, periodic, lateral="m")
+            return Raw(data[...], None if told is None else str(told), *facts)
     except (AttributeError, KeyError, OSError, RuntimeError, TypeError) as error:  # as HDF5 tells of damage
         raise ValueError(f"{path}: is a damaged {FILETYPE} file: {one_line(str(error))}") from None
 
 
-def _facts(path: Path, pixel: Any, periodic: Any) -> tuple[tuple[float, float], bool]:
-    """Pixel and periodicity from a file, if they are two numbers and a truth: "no" is true in Python."""
+def _facts(path: Path, pixel: Any, periodic: Any) -> tuple[tuple[float, float], str, bool]:
+    """Pixel, its unit and periodicity, if they are two numbers and a truth: "no" is true in Python."""
     values = pixel.tolist() if isinstance(pixel, np.ndarray) else pixel
     if not (isinstance(values, list) and len(values) == 2 and all(type(p) in (int, float) for p in values)):
         raise ValueError(f"{path}: pixel = {pixel!r}: must be [dx, dy], two numbers in m")
     if not isinstance(periodic, bool | np.bool_):
         raise ValueError(f"{path}: periodic = {periodic!r}: must be true or false")
-    return (float(values[0]), float(values[1])), bool(periodic)
+    return (float(values[0]), float(values[1])), "m", bool(periodic)
 
 
 def _write_sdf(topography: Topography, path: Path) -> None:
@@ -127,7 +123,7 @@ def _write_sdf(topography: Topography, path: Path) -> None:
     scales = (*topography.pixel, 1.0, 0.0)  # of x, y and z, and the resolution of z
     head = (b"bISO-1.0", b"mcgw".ljust(10), stamp, stamp, columns, rows, *scales, 0, 7, 0)  # 7: a double
     with open(path, "wb") as file:
-        file.write(_HEADER.pack(*head))
+        file.write(struct.pack("<8s10s12s12sHHddddBBB", *head))
         for row in topography.heights:
             file.write(row.astype("<f8").tobytes())
 
@@ -198,13 +194,12 @@ def read_foreign(path: Path, given: Given) -> Raw:
         found = channel.topography(**sized)
         if channel.dim == 1:
             x, z = found.positions_and_heights()
-            return Raw(np.ma.filled(z, np.nan), told, places=x, lateral=told or given.unit)
+            return Raw(np.ma.filled(z, np.nan), told, x, told or given.unit)
         z = np.ma.filled(np.ma.masked_invalid(found.heights()), np.nan).T
-    if given.missing is None:
-        z[np.abs(z) > _LARGEST * abs(channel.height_scale_factor or 1.0)] = np.nan
-    dx, dy = found.pixel_size
-    pixel = None if sized else (float(dx), float(dy))
-    return Raw(z, told, pixel, bool(found.is_periodic), lateral=told or given.unit)
+    if given.missing is None:  # files mark a missing point by the least number of their type
+        z[np.abs(z) > 3.4e38 * abs(channel.height_scale_factor or 1.0)] = np.nan
+    pixel = None if sized else tuple(map(float, found.pixel_size))
+    return Raw(z, told, pixel, told or given.unit, bool(found.is_periodic))
 
 
 def _check(path: Path) -> None:
@@ -219,7 +214,7 @@ def _check(path: Path) -> None:
     elif path.stat().st_size > _MOST_TEXT:
         with open(path, "rb") as file:
             start = file.read(64)  # bytes that tell a text
-        if not start.strip(_PRINTABLE):
+        if not start.strip(bytes(range(32, 127)) + b"\t\r\n"):
             raise ValueError(f"{path}: a text longer than {_MOST_TEXT} bytes; save it as .npy")
 
 

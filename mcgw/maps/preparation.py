@@ -17,15 +17,7 @@ from mcgw.maps.topography import SMALLEST, Topography
 from mcgw.scene.kinds import Whole, Word, argument, arguments
 from mcgw.scene.section import Kind
 
-_LEAST = 0.5  # share of measured points that must have all neighbours, else filled ones count
-_STEPS, _CLOSE = 2000, 1e-8
 _REACH = 3  # pixels from a point to the ring around it: a spike is narrower than five
-_BENT = 7.0  # times the usual bend: exceeded once in 4e11 points of a Gaussian map
-_OF_MEDIAN = 0.6745  # median over standard deviation of a Gaussian
-_OUT = 3.0  # ranges of the ring: 12 deviations of white noise beyond it; ridges, pits and peaks stay below
-_LOOKED_AT = 2**18  # points tell the steps of up to some thousand levels
-_MOST_LEVELS = 2**12
-_MORE = 1.3  # times the points of the next level: of a summit that a step cuts, no level has more
 
 
 @dataclass(frozen=True)
@@ -148,7 +140,7 @@ def _seen(topography: Topography, holes: Marks, asked: Preparation, notes: list[
     told = f"missing: {number} of {holes.size} points ({100 * holes.mean():.2g} %) filled from their edges"
     whole = ndimage.minimum_filter(seen, 2 * 2 + 1)  # pixels on each side that differences need
     left = np.count_nonzero(whole) / max(np.count_nonzero(~holes) * seen.size / holes.size, 1)
-    if asked.missing == "fill" or (asked.missing == "auto" and left < _LEAST):
+    if asked.missing == "fill" or (asked.missing == "auto" and left < 0.5):
         why = (
             "" if asked.missing == "fill" else f": only {100 * left:.2g} % of the others have all neighbours"
         )
@@ -189,7 +181,7 @@ def filled(heights: Array) -> Array:
     away = known - matrix @ start  # solved for the difference, since heights may be far from zero
     scale = float(np.abs(away).max())
     if scale > 0:
-        found = cg(matrix, away / scale, rtol=_CLOSE, maxiter=min(_STEPS, 10 * math.isqrt(number) + 50))[0]
+        found = cg(matrix, away / scale, rtol=1e-8, maxiter=min(2000, 10 * math.isqrt(number) + 50))[0]
         result[missing] = start + scale * found
     return np.asarray(result)
 
@@ -199,7 +191,8 @@ def spike_heights(topography: Topography) -> Array:
 
     Points of a spike stand out of the ring three pixels around them, on a map that lacks no points: by more
     than three times the range of heights on that ring, and on half of all rings of the map. So the scale is
-    that of the surface next to the point, and a few spikes do not change it.
+    that of the surface next to the point, and a few spikes do not change it. White noise would have to be 12
+    deviations beyond the ring; ridges, pits and peaks stay below.
     """
     heights = topography.heights
     above = np.zeros(heights.shape)
@@ -212,19 +205,20 @@ def spike_heights(topography: Topography) -> Array:
     some = high[:: max(heights.size // 2**20, 1)]  # rings: enough for their median to a thousandth
     usual = float(np.median(some)) or float(some.mean())  # 0: most of it is flat
     out = np.clip(heights - low, None, 0) + np.clip(heights - low - high, 0, None)
-    return np.where(np.abs(out) > _OUT * np.maximum(high, usual), out, 0.0)
+    return np.where(np.abs(out) > 3 * np.maximum(high, usual), out, 0.0)
 
 
 def small_spike_heights(topography: Topography) -> Array:
     """Heights of spikes above the mean of their four neighbours, for points with unusual bends.
 
     A spike may be lower than its surroundings are high and still have most of the curvature of a map. Its
-    second differences lie beyond seven times the usual ones, and beyond those of the points next to it.
+    second differences lie beyond seven times the usual ones (once in 4e11 points of a Gaussian map), and
+    beyond those of the points next to it.
     """
     bends = ndimage.laplace(topography.heights, mode="nearest")
     size = np.abs(bends)
-    usual = float(np.median(np.abs(bends - np.median(bends)))) / _OF_MEDIAN
-    out = (size > _BENT * usual) & (size == ndimage.maximum_filter(size, 3))
+    usual = float(np.median(np.abs(bends - np.median(bends)))) / 0.6745  # of a Gaussian
+    out = (size > 7 * usual) & (size == ndimage.maximum_filter(size, 3))
     return np.asarray(np.where(out, bends / -4, 0.0))
 
 
@@ -235,14 +229,14 @@ def recorded(heights: Array) -> tuple[float, float]:
     share of the points that have the greatest height, or the least, where they are more than a range that
     holds all heights leaves there, else 0.
     """
-    some = heights.ravel()[:: max(heights.size // _LOOKED_AT, 1)]
+    some = heights.ravel()[:: max(heights.size // 2**18, 1)]  # enough for up to some thousand levels
     levels = np.unique(some[np.isfinite(some)])
     steps = np.diff(levels)
-    step = float(np.median(steps)) if 1 < levels.size < min(_MOST_LEVELS, some.size / 8) else 0.0
+    step = float(np.median(steps)) if 1 < levels.size < min(2**12, some.size / 8) else 0.0
     clipped = 0.0
     for end, inwards in ((np.nanmax(heights), -step), (np.nanmin(heights), step)):
         number = np.count_nonzero(heights == end)
         below = np.count_nonzero(np.abs(heights - (end + inwards)) < step / 2) if step else 0
-        if number > max(_MORE * below, 1):  # the next level has clearly fewer
+        if number > max(1.3 * below, 1):  # of a summit that a step cuts, no level has so many more
             clipped = max(clipped, number / heights.size)
     return step, clipped

@@ -38,12 +38,7 @@ from mcgw.maps.topography import Profile, filter_variance
 from mcgw.maps.waves import Uncertain, log_derivatives, uncertain
 
 _ORDERS = {"none": 0, "plane": 1, "quadratic": 2}
-_REACH = 1.5  # range of the weights, in cutoffs: exp(-16) beyond
-_LEAST_REACH = 24  # points: with a short cutoff weights decay slowly
-_STENCIL = 4  # points, without a cutoff
-_FINE = 16  # points of a spectrum per weight
 _SMOOTH = 3  # waves over which power is averaged
-_LOW = slice(1, 5)  # waves that show what the form removed
 
 
 @dataclass(frozen=True, repr=False)
@@ -186,13 +181,11 @@ def _error(stretches: Array, waves: Array) -> float:
 
 def _peaks(profiles: list[Profile]) -> tuple[float, float]:
     """Peaks per length of filtered profiles, counted and by Rice's formula."""
-    counted, slopes, bends, length = 0, 0.0, 0.0, 0.0
-    for p in profiles:
-        z, h = p.heights, p.spacing
-        counted += int(np.count_nonzero((z[1:-1] > z[:-2]) & (z[1:-1] >= z[2:])))
-        slopes += float(np.sum((np.diff(z)[:-1] / h) ** 2))
-        bends += float(np.sum((np.diff(z, 2) / h**2) ** 2))
-        length += (z.size - 2) * h
+    steps = [(np.diff(p.heights) / p.spacing, p.spacing) for p in profiles]
+    counted = sum(np.count_nonzero((slope[:-1] > 0) & (slope[1:] <= 0)) for slope, _ in steps)
+    length = sum((slope.size - 1) * spacing for slope, spacing in steps)
+    slopes = sum(float(np.sum(slope[:-1] ** 2)) for slope, _ in steps)
+    bends = sum(float(np.sum((np.diff(slope) / spacing) ** 2)) for slope, spacing in steps)
     return counted / length, math.sqrt(bends / slopes) / (2 * math.pi)
 
 
@@ -225,9 +218,9 @@ def _waves(profile: Profile, cutoff: float | None, terms: int, pieces: int) -> t
     the form took a wave with it, of the longest there are, which m0 gets back.
     """
     h, z = profile.spacing, profile.heights
-    reach = _STENCIL if cutoff is None else max(math.ceil(_REACH * cutoff / h), _LEAST_REACH)
-    reach = min(reach, z.size // 2)
-    weights = fft.irfft(_gains(fft.rfftfreq(_FINE * reach), h, cutoff), _FINE * reach)[:, : reach + 1]
+    # exp(-16) of the weights lies beyond 1.5 cutoffs; with a short cutoff they decay slowly
+    reach = min(4 if cutoff is None else max(math.ceil(1.5 * cutoff / h), 24), z.size // 2)  # points
+    weights = fft.irfft(_gains(fft.rfftfreq(16 * reach), h, cutoff), 16 * reach)[:, : reach + 1]
     stretches = np.array(
         [
             _stretches(np.diff(z, order) / h**order, row, pieces)
@@ -238,7 +231,7 @@ def _waves(profile: Profile, cutoff: float | None, terms: int, pieces: int) -> t
     differences = (2 / h * np.sin(math.pi * frequencies)) ** np.array([[0], [2], [4]])
     of_waves = _gains(frequencies, h, cutoff) * differences
     power = _power(z)
-    taken = float(np.mean(power[_LOW] * of_waves[0, _LOW])) / 2  # a wave has two terms
+    taken = float(np.mean(power[1:5] * of_waves[0, 1:5])) / 2  # a wave has two terms
     stretches[0] += terms * taken
     smoothed = np.convolve(power, np.full(_SMOOTH, 1 / _SMOOTH), mode="same")
     return stretches, np.asarray(of_waves * smoothed)
@@ -258,9 +251,8 @@ def _stretches(u: Array, weights: Array, pieces: int) -> Array:
     """Return the sums over distances of weight times mean product, from pairs that begin on each stretch."""
     n, reach = u.size, weights.size - 1
     size = fft.next_fast_len(n + reach, real=True)
-    even = np.zeros(size)
-    even[: reach + 1] = weights * n / (n - np.arange(reach + 1))  # number of pairs
-    even[size - reach :] = even[1 : reach + 1][::-1]
+    one_side = weights * n / (n - np.arange(reach + 1))  # by the number of pairs
+    even = np.concatenate([one_side, np.zeros(size - 2 * reach - 1), one_side[:0:-1]])
     products = u * fft.irfft(fft.rfft(u, size) * fft.rfft(even), size)[:n]
     edges = np.linspace(0, n, pieces + 1).round().astype(np.int64)
     return np.asarray(np.add.reduceat(products, edges[:-1]) * pieces / n)

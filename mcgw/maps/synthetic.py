@@ -17,7 +17,6 @@ from mcgw.scene.scene import Scene
 
 _HURST = 0.8
 _UNITS = {"rms": "m", "long": "m", "short": "m", "m0": "m^2", "m2": "1", "m4": "1/m^2"}
-_NARROWEST, _WIDEST = 1 + 1e-6, 1e6  # ratio of the long to the short wavelength
 
 
 @dataclass(frozen=True)
@@ -67,7 +66,7 @@ class Spectrum:
             q4, q2 = (_mean_power(k, math.exp(log_ratio), hurst) for k in (4, 2))
             return 1.5 * q4 / q2**2
 
-        low, high = math.log(_NARROWEST), math.log(_WIDEST)
+        low, high = 1e-6, math.log(1e6)  # of the ratio of the wavelengths
         if not alpha(low) < moments.alpha < alpha(high):
             raise ValueError(
                 f"m0 m4/m2^2 = {moments.alpha:.6g}: give a ratio above 1.5 and below {alpha(high):.4g}"

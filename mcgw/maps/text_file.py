@@ -30,8 +30,6 @@ _WITHOUT_COMMA = re.compile(r"[ \f\v]*[;\t][ \f\v]*|[ \f\v]+")
 _COMMA_ALONE = re.compile(r"\s*[-+]?\d+(?:,\d+)?(?:[eE][-+]?\d+)?\s*")
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d*(?:[eE][-+]?\d+)?")
 _MORE_COMMAS = re.compile(r"[-+.,\deE]*\d,+[-+.\d][-+.,\deE]*")
-_MISSING = ("", "BAD", "---")
-_SAME = 0.3  # of the widest step: places nearer than that are one
 
 
 def read_text(path: Path, given: Given) -> Raw:
@@ -62,9 +60,9 @@ def read_text(path: Path, given: Given) -> Raw:
     if columns == XYZ and not extent:
         for along, across in ((0, 1), (1, 0)):
             if np.ptp(table[:, across]) == 0 < np.ptp(table[:, along]):
-                return Raw(table[:, 2], told[2], places=table[:, along], lateral=told[along])
+                return Raw(table[:, 2], told[2], table[:, along], told[along])
     if columns == 2 and not extent:
-        return Raw(table[:, 1], told[1], places=table[:, 0], lateral=told[0])
+        return Raw(table[:, 1], told[1], table[:, 0], told[0])
     if columns == 1 and not extent:
         return Raw(table[:, 0], told[0])
     points = columns == XYZ < rows
@@ -78,7 +76,7 @@ def read_text(path: Path, given: Given) -> Raw:
     if set(extent) != {"width", "height"}:
         message = f"{path}: does not give the size of a pixel; give --pixel"
         raise (ForeignError if header and not extent else ValueError)(message)
-    return Raw(table, unit, (extent["width"] / columns, extent["height"] / rows), lateral="m")
+    return Raw(table, unit, (extent["width"] / columns, extent["height"] / rows), "m")
 
 
 def table_of(path: Path) -> tuple[Array, dict[int, str], ValueError | None]:
@@ -175,7 +173,7 @@ def _words_of(path: Path, number: int, line: str) -> list[str]:
 def _numbers_of(path: Path, number: int, words: list[str]) -> Array:
     """Return what `_words_of` found, nan where points are missing."""
     try:
-        row = np.array([float("nan" if word in _MISSING else word) for word in words])
+        row = np.array([float("nan" if word in ("", "BAD", "---") else word) for word in words])
     except ValueError as error:
         raise ForeignError(f"{path}: line {number}: {str(error)[:80]}") from None
     if np.any(np.isinf(row)):
@@ -226,14 +224,14 @@ def _of_points(path: Path, points: Array, told: list[str | None], given: Given) 
     if twice.any():
         raise ValueError(f"{path}: x = {x[twice][0]:g}, y = {y[twice][0]:g} has two heights")
     heights[j, i] = points[:, 2]
-    return Raw(heights, told[2], (dx, dy), lateral="m" if units[0] else None)
+    return Raw(heights, told[2], (dx, dy), "m" if units[0] else None)
 
 
 def _places(path: Path, name: str, values: Array) -> tuple[int, float, NDArray[np.intp]]:
     """Return the number of places along an axis, their distance, and which one each point has."""
     ordered, which = np.unique(values, return_inverse=True)
     steps = np.diff(ordered, prepend=ordered[0])
-    places = np.cumsum(steps > _SAME * steps.max())[which]
+    places = np.cumsum(steps > 0.3 * steps.max())[which]  # places nearer than that are one
     centres = np.bincount(places, weights=values) / np.bincount(places)
     distance = float(f"{np.ptp(centres) / max(len(centres) - 1, 1):.12g}")  # as a text may give it
     off = np.abs(values - centres[0] - distance * places)

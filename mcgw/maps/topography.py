@@ -17,12 +17,9 @@ from mcgw.formats.units import METRES
 MOST_PIXELS = 2**28  # 16384 x 16384: 2 GiB as float64
 SMALLEST, LARGEST = 1e-150, 1e150  # of what is squared, m: sums of squares and a dozen times that, too
 _FINEST = 1e-30  # m, of a pixel, whose eighth power still counts
-_SMALL, _PACKED = 2**22, 20  # points that any file may declare, and that each of its bytes may hold
-_ENOUGH = 2**20  # differences between neighbours tell their median to a thousandth
 XYZ = 3
 STEEPEST = 10.0  # 84 degrees: no instrument that gives a height map sees such slopes all over it
 LEAST_POINTS = 8  # of a profile
-_WIDEST, _LONGEST = 1e-2, 0.2  # m, longest spacing and profile of a stylus
 FLATTEST = 1e-6  # and no surface is so flat from one pixel to the next
 
 
@@ -88,9 +85,9 @@ class Topography:
     def steepness(self) -> float:
         """Typical slope, from medians of the differences between neighbours, which spikes do not affect.
 
-        For a large map, about a million of them are used, on equally spaced lines.
+        For a large map about a million of them, on equally spaced lines, tell their median to a thousandth.
         """
-        every = max(self.heights.size // _ENOUGH, 1)
+        every = max(self.heights.size // 2**20, 1)
         usual = [
             float(np.nanmedian(np.abs(differences))) / pixel
             for lines, pixel in ((self.heights, self.pixel[0]), (self.heights.T, self.pixel[1]))
@@ -155,9 +152,9 @@ class Profile:
             return ""
         if self.steepness > STEEPEST:
             return f"the typical slope is {self.steepness:.3g}"
-        if self.spacing > _WIDEST:
+        if self.spacing > 1e-2:  # m: no stylus steps so far
             return f"the points are {self.spacing:g} m apart"
-        return f"it is {self.length:.3g} m long" if self.length > _LONGEST else ""
+        return f"it is {self.length:.3g} m long" if self.length > 0.2 else ""
 
     def without_form(self, order: int) -> "Profile":
         """Subtract the polynomial of least squares of this order; the mean in any case."""
@@ -196,7 +193,7 @@ def checked_shape(rows: int, columns: int, *, held: int | None = None) -> tuple[
         raise ValueError(
             f"{columns} x {rows} points: more than the maximum of {MOST_PIXELS}; crop the map first"
         )
-    if held is not None and rows * columns > max(_SMALL, _PACKED * held):
+    if held is not None and rows * columns > max(2**22, 20 * held):  # 20 points in a byte, or a small map
         raise ValueError(f"{columns} x {rows} points: more than {held} bytes hold of a map")
     return rows, columns
 
@@ -218,10 +215,9 @@ class Raw(NamedTuple):
 
     heights: NDArray[Any]  # in their unit, shape (rows, columns) or (points,)
     unit: str | None = None  # of the heights, where the file tells it
-    pixel: tuple[float, float] | None = None  # of a map, where the file tells it
+    steps: Any = None  # pixel (dx, dy) of a map, or places of the points of a profile, where they are told
+    lateral: str | None = None  # unit of these, where it is known
     periodic: bool = False  # whether opposite edges fit together
-    places: Array | None = None  # of the points of a profile along its line
-    lateral: str | None = None  # unit of the pixel or the places, where it is known
 
 
 def metres_in(path: Path, unit: str | None) -> float:

@@ -15,8 +15,6 @@ from mcgw.maps.topography import Topography
 
 _ACROSS = 1536  # points that are looked at; of the waves shorter than that there are always many
 _BAND = 16  # rows that are looked at together: what is made of them stays in the cache
-_ROOTS = ("radius", "sigma")  # which go as the root of a power
-_OUTSIDE = 0.025  # at either end of an interval
 
 
 class Uncertain(NamedTuple):
@@ -116,7 +114,7 @@ def waves_of(topography: Topography, moments: SpectralMoments, order: int = -1) 
         taken += float((power[band] * (share / np.where(share < 1, 1 - share, np.inf)) @ waves).sum())
     low = taken / total
     spreads = {
-        name: _spread(of, 0.5 if name in _ROOTS else 1.0, float(by_moments[name][0]) * low)
+        name: _spread(of, 0.5 if name in ("radius", "sigma") else 1.0, float(by_moments[name][0]) * low)
         for name, of in zip(by_moments, sums.T.tolist(), strict=True)
     }
     return Waves(spreads, 2 * _number(float(sums[0, 0])), products)
@@ -147,7 +145,7 @@ def _spread(sums: list[float], degree: float, low: float) -> Spread:
     n = _number(seen / degree**2)
     freedom = max(0.4 * (3 * seen * seen / fourth - 5), 2.0)  # twice the mean over the variance
     wider = math.copysign(degree, third) * float(stdtrit(freedom, float(ndtr(2.0)))) / 2
-    ends = sorted(-wider * math.log(gammaincinv(n, p) / n) for p in (_OUTSIDE, 1 - _OUTSIDE))
+    ends = sorted(-wider * math.log(gammaincinv(n, p) / n) for p in (0.025, 0.975))
     error = math.hypot(wider * math.sqrt(float(polygamma(1, n))), low)
     return Spread(error, -ends[0] + max(-low, 0.0), ends[1] + max(low, 0.0))
 
