@@ -31,9 +31,11 @@ def without_form(topography: Topography, form: Form) -> Topography:
     y, x = (legvander((np.arange(n) + 0.5) / n * 2 - 1, order) for n in z.shape)
     a, b = np.nonzero(np.add.outer(np.arange(order + 1), np.arange(order + 1)) <= order)  # degrees of y and x
     there = np.isfinite(z)
-    projected = y.T @ (z if there.all() else np.where(there, z, 0.0)) @ x
+    whole = bool(there.all())
+    projected = y.T @ (z if whole else np.where(there, z, 0.0)) @ x
     square_y, square_x = ((v[:, :, None] * v[:, None, :]).reshape(len(v), -1) for v in (y, x))
-    gram = (square_y.T @ there @ square_x).reshape([order + 1] * 4)  # degrees of y, twice, and of x, twice
+    squares = np.outer(square_y.sum(axis=0), square_x.sum(axis=0)) if whole else square_y.T @ there @ square_x
+    gram = squares.reshape([order + 1] * 4)  # degrees of y, twice, and of x, twice
     weights = np.zeros_like(projected)
     weights[a, b] = np.linalg.lstsq(gram[a[:, None], a, b[:, None], b], projected[a, b], rcond=None)[0]
     return replace(topography, heights=z - y @ weights @ x.T, periodic=False)
