@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic import Hertz, quantity_of
 from mcgw.ensemble.simulation import simulate
-from mcgw.figures.compared import POWERS, SCENE, Compared, Mean, Modulus, over_separation, ratio
+from mcgw.figures.compared import SCENE, Compared, Mean, Modulus, over_separation, ratio
 from mcgw.figures.panels import GAMMA, PRESSURE, SEPARATION, FigureData, Panel, Series
 from mcgw.figures.studies import spread, spread_panel
 from mcgw.figures.style import power_of_ten, prefixed
@@ -122,20 +122,13 @@ def mean_moduli(f: Compared) -> FigureData:
         for weight, words in _TITLES.items():
             panels.append(ratio(f, words, r"\psi/\psi", Modulus(weight), *_MODULI, _AT))
         return FigureData(title, caption, tuple(panels))
-    plain = (
-        type(f.scene.law) is Hertz and f.scene.summits is None
-    )  # else area and load of a contact are not powers
-    series = tuple(
-        over_separation(
-            f, "contacts" if weight == "number" else weight, Modulus(weight), SCENE, len(f.listed) or 1
-        )
-        for weight in (POWERS if plain else ("number",))
-    )  # points where the heights that are listed are enough
-    said = (
-        f"Mean over the contacts, each weighted alike (contacts){', by its area, or by its load' * plain}. "
-    )
-    panel = Panel("", SEPARATION, _PSI, series, level=1.0)
-    return FigureData(title, said + caption, (panel,))
+    weights, said = {"contacts": "number"}, "Mean over the contacts, each weighted alike (contacts)"
+    if type(f.scene.law) is Hertz and f.scene.summits is None:  # else neither is a power of the overlap
+        weights, said = weights | {"area": "area", "load": "load"}, f"{said}, by its area, or by its load"
+    listed = len(f.listed) or 1  # surfaces: points where these are enough
+    series = (over_separation(f, label, Modulus(w), SCENE, listed) for label, w in weights.items())
+    panel = Panel("", SEPARATION, _PSI, tuple(series), level=1.0)
+    return FigureData(title, f"{said}. {caption}", (panel,))
 
 
 def fluctuations(f: Compared) -> FigureData:
@@ -154,12 +147,11 @@ def fluctuations(f: Compared) -> FigureData:
             for n in (100, 1000, 10_000, 100_000, 1_000_000)
         )
         panels.append(Panel(f"{key}  {name}", SEPARATION, "std / mean", series, ("linear", "log"), 1.0))
-    return FigureData(
-        "Scatter of finite surfaces",
+    caption = (
         f"N asperities per surface; 2000 surfaces (400 for N = 10⁶), seed {scene.seed}. Markers with 95 % "
-        "intervals, for 400 contacts or more.",
-        tuple(panels),
+        "intervals, for 400 contacts or more."
     )
+    return FigureData("Scatter of finite surfaces", caption, tuple(panels))
 
 
 CATALOGUE: dict[str, tuple[Callable[..., FigureData], tuple[str, ...]]] = {  # needs: see `_lacking`

@@ -6,7 +6,7 @@ by Monte Carlo.
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property, wraps
 from typing import Any, TypeVar
 
@@ -52,90 +52,34 @@ def _once(method: Callable[..., _Result]) -> Callable[..., _Result]:
     return call
 
 
-@dataclass(frozen=True)
 class Compared:
     """Scenes on the same surfaces, each with its theory and its ensemble when first asked for.
 
-    Those of a scene that is swept get the gradings of the paper. Any other stands as it is beside what it is
-    measured by: itself without interaction, without its grading, and with Hertz's law.
+    Those of a scene that is swept get the gradings of the paper. Any other is pressed once, with the sums
+    that the figures show, at some of its separations. It stands as it is beside what it is measured by:
+    itself without interaction, without its grading, and with Hertz's law.
     """
 
-    asked: Scene  # as it was given
-    swept: bool = False
-    most_listed: int = 100  # surfaces whose heights are listed one by one
-    _kept: dict[Any, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
-
-    @cached_property
-    def scene(self) -> Scene:
-        """What is drawn: pressed once, with the sums that the figures show, at some of its separations."""
-        if self.swept:
-            return self.asked.replace(
-                grading=Homogeneous(), separations=np.linspace(0, 4, 17), quantities=tuple(QUANTITIES)
-            )
-        h = np.unique(self.asked.separations)
-        cheap = _MOST_ASPERITIES // self.asked.n_asperities
-        return self.asked.replace(
-            separations=h[evenly(len(h), _MOST_SEPARATIONS)], quantities=tuple(QUANTITIES),
-            n_surfaces=max(min(self.asked.n_surfaces, _MOST_SURFACES, cheap), 1),
-            unload_from=None, joint=None, keep="sums", rel_err=None, max_seconds=None,
-        )  # fmt: skip
-
-    @cached_property
-    def all(self) -> dict[str, Scene]:
-        """Scenes by label, the one that ratios are taken to last; that alone if it is the simplest itself."""
-        if self.swept:
-            gammas = (gamma for gamma in _GAMMAS if gamma != 1)
-            graded = {f"γ = {g:g}": self.scene.replace(grading=Exponential(g)) for g in gammas}
-            return graded | {"γ = 1": self.scene}
-        found = {SCENE: self.scene}
-        if self.scene.interaction is not None:
-            found["independent"] = self.scene.replace(interaction=None)
-        if self.graded:
-            found["homogeneous"] = self.scene.replace(grading=Homogeneous())
-        if type(self.scene.law) is not Hertz:
-            found["homogeneous, Hertz"] = self.scene.replace(grading=Homogeneous(), law=Hertz())
-        return found
-
-    @property
-    def groups(self) -> tuple[tuple[str, tuple[str, ...]], ...]:
-        """Titles of panels, and labels of what they show together."""
-        if not self.swept:
-            return (("", tuple(self.all)),)
-        labels, one = tuple(f"γ = {g:g}" for g in _GAMMAS), _GAMMAS.index(1)
-        return ("a  stiffer tips", labels[: one + 1]), ("b  softer tips", labels[one:])
-
-    @property
-    def graded(self) -> bool:
-        """Whether a modulus depends on the height."""
-        return self.swept or not isinstance(self.scene.grading, Homogeneous)
-
-    @property
-    def reference(self) -> str:
-        """Label of the reference of ratios."""
-        return list(self.all)[-1]
-
-    @property
-    def others(self) -> tuple[str, ...]:
-        """Labels of the scenes that are divided by the reference."""
-        return tuple(self.all)[:-1]
-
-    @cached_property
-    def h(self) -> Array:
-        """Separations of the points."""
-        return np.array(self.scene.separations)
-
-    @cached_property
-    def line(self) -> Array:
-        """Separations of the lines."""
-        if self.swept:
-            return np.linspace(0, 4, 161)
+    def __init__(self, asked: Scene, swept: bool = False, most_listed: int = 100) -> None:
+        self.swept, self.most_listed = swept, most_listed  # surfaces whose heights are listed one by one
+        self.scene = _of_paper(asked) if swept else _pressed_once(asked)
+        self.all = _gradings(self.scene) if swept else _simpler(self.scene)  # by label
+        labels = tuple(self.all)
+        self.reference = "γ = 1" if swept else labels[-1]  # of ratios: the simplest
+        self.others = tuple(label for label in labels if label != self.reference)
+        self.graded = swept or "homogeneous" in labels  # whether a modulus depends on the height
+        one = labels.index(self.reference)  # titles of panels, and labels of what they show together:
+        halves = (("a  stiffer tips", labels[: one + 1]), ("b  softer tips", labels[one:]))
+        self.groups = halves if swept else (("", labels),)
+        self.h = np.array(self.scene.separations)  # of the points
         fine = _FINE if self.scene.summits is None else _COARSE
-        return np.linspace(self.h.min(), self.h.max(), fine) if len(self.h) > 1 else self.h
+        ends = (0, 4, 161) if swept else (self.h.min(), self.h.max(), fine if len(self.h) > 1 else 1)
+        self.line = np.linspace(*ends)  # separations of the lines
+        self._kept: dict[Any, Any] = {}
 
     def of(self, key: Key) -> Scene:
         """Return the scene of a label or gamma."""
-        label = key if isinstance(key, str) else f"γ = {key:g}"
-        return self.all[label] if label in self.all else self.scene.replace(grading=Exponential(float(key)))
+        return self.all[key] if isinstance(key, str) else self.scene.replace(grading=Exponential(key))
 
     @_once
     def theory(self, key: Key, quantity: str, h: Array) -> Array:
@@ -152,8 +96,7 @@ class Compared:
     @_once
     def drawn(self, key: Key, h: Array | None = None) -> Ensemble:
         """Ensemble on the same surfaces, at the separations of the scene or at others."""
-        there: dict[str, Any] = {} if h is None else {"separations": h}
-        return simulate(self.of(key), **there)
+        return simulate(self.of(key), **({} if h is None else {"separations": h}))
 
     def values(self, key: Key, quantity: str, h: Array) -> Array:
         """Return the sums of each surface at some of the separations of the scene, or at others."""
@@ -167,18 +110,16 @@ class Compared:
         if isinstance(self.scene.heights, MeasuredHeights):  # the same on every surface, or nearly
             return ()
         room = max(int(_MOST_HEIGHTS / max(self.scene.touching, 1.0)), 2)
-        scene = self.scene
-        if scene.summits is None:
-            scene = scene.replace(sampler="tail", keep="sums")
+        scene = self.scene.replace(sampler="tail") if self.scene.summits is None else self.scene
         return tuple(heights(scene, k) for k in range(min(self.most_listed, scene.n_surfaces, room)))
 
     def caption(self, surfaces: int | None = None) -> str:
         """Describe the scene, and what is drawn of so many surfaces (default: all); of none, it alone."""
         surfaces, said = self.scene.n_surfaces if surfaces is None else surfaces, []
         if not self.swept:
-            heard = ", interacting (d/σ is effective)" if self.scene.interaction is not None else ""
+            pressed = ", interacting (d/σ is effective)" if self.scene.interaction is not None else ""
             law = short(law_text(self.scene.heights))
-            said.append(f"This scene: {contact_label(self.scene)}{heard}; heights {law}.")
+            said.append(f"This scene: {contact_label(self.scene)}{pressed}; heights {law}.")
         if surfaces > 1:
             said.append(
                 f"Markers: Monte-Carlo means with 95 % intervals, {surfaces} surfaces of "
@@ -186,6 +127,38 @@ class Compared:
                 f"{'γ' if self.swept else 'lines'}."
             )
         return " ".join([*said, "Lines: theory."] if surfaces else said)
+
+
+def _of_paper(scene: Scene) -> Scene:
+    return scene.replace(
+        grading=Homogeneous(), separations=np.linspace(0, 4, 17), quantities=tuple(QUANTITIES)
+    )
+
+
+def _pressed_once(scene: Scene) -> Scene:
+    h = np.unique(scene.separations)
+    cheap = _MOST_ASPERITIES // scene.n_asperities
+    return scene.replace(
+        separations=h[evenly(len(h), _MOST_SEPARATIONS)], quantities=tuple(QUANTITIES),
+        n_surfaces=max(min(scene.n_surfaces, _MOST_SURFACES, cheap), 1),
+        unload_from=None, joint=None, keep="sums", rel_err=None, max_seconds=None,
+    )  # fmt: skip
+
+
+def _gradings(scene: Scene) -> dict[str, Scene]:
+    graded = {f"γ = {g:g}": scene.replace(grading=Exponential(g)) for g in _GAMMAS}
+    return graded | {"γ = 1": scene}
+
+
+def _simpler(scene: Scene) -> dict[str, Scene]:
+    found = {SCENE: scene}
+    if scene.interaction is not None:
+        found["independent"] = scene.replace(interaction=None)
+    if not isinstance(scene.grading, Homogeneous):
+        found["homogeneous"] = scene.replace(grading=Homogeneous())
+    if type(scene.law) is not Hertz:
+        found["homogeneous, Hertz"] = scene.replace(grading=Homogeneous(), law=Hertz())
+    return found
 
 
 def _ratio(above: Sequence[Array], below: Sequence[Array]) -> Estimate:
