@@ -48,20 +48,16 @@ class PrincipalComponents:
         touching = n * np.minimum(share, 1 - share + (scene.count == "poisson"))
         chosen = np.flatnonzero((touching > _TOUCHING) & (variance > 0))
         unit = np.sqrt(variance[chosen])
-        axes = parts.take(chosen, unit).whitening(_INDEPENDENT)
-        along = parts.take(chosen, unit).turned(axes)
-        third, fourth = along.moment(3), along.moment(4) - 3 * (scene.count == "fixed")
-        good = np.abs(fourth) / n < 0.5  # of a combination, over surfaces
+        parts = parts.take(chosen, unit)
+        axes = parts.whitening(_INDEPENDENT)
+        along = parts.turned(axes)
+        third = along.moment(3) / np.sqrt(n)
+        fourth = (along.moment(4) - 3 * (scene.count == "fixed")) / n
+        good = np.abs(fourth) < 0.5  # of a combination, over surfaces
         columns = tuple((quantities[c // len(h)], c % len(h)) for c in chosen.tolist())
         scale = np.array([quantity_of(name).scale(scene.surface) for name, _ in columns])
-        return cls(
-            columns,
-            n * scale * parts.mean[chosen],
-            np.sqrt(n) * scale * unit,
-            axes[:, good],
-            third[good] / np.sqrt(n),
-            fourth[good] / n,
-        )
+        std = np.sqrt(n) * scale * unit
+        return cls(columns, np.sqrt(n) * std * parts.mean, std, axes[:, good], third[good], fourth[good])
 
     def turn(self, sums: Mapping[str, NDArray[Any]]) -> Array:
         """Every surface along the axes, shape (surfaces, axes)."""
@@ -93,10 +89,9 @@ class Slope:
     @property
     def check(self) -> Check:
         """Whether the exponent is -1/2."""
-        z = (self.value + 0.5) / self.uncertainty
-        half = 1.96 * self.uncertainty
-        seen = f"{self.value:.4f} +- {half:.4f} (95 %), expected -0.5"
-        return Check(f"slope of the error in {self.against}", seen, float(2 * norm.sf(abs(z))))
+        p = float(2 * norm.sf(abs(self.value + 0.5) / self.uncertainty))
+        seen = f"{self.value:.4f} +- {1.96 * self.uncertainty:.4f} (95 %), expected -0.5"
+        return Check(f"slope of the error in {self.against}", seen, p)
 
 
 def slope(against: str, rows: Iterable[tuple[float, Array, float]]) -> list[Slope]:
@@ -145,12 +140,11 @@ def skewness(exact: PrincipalComponents, y: Array) -> Check:
     """Third cumulant along each axis, by the Hermite polynomial whose mean it is."""
     values = y**3 - 3 * y
     z = (values.mean(axis=0) - exact.skewness) / (values.std(axis=0) / np.sqrt(len(y)))
-    exactly = exact.skewness
-    return worst(
-        "skewness",
-        2 * norm.sf(np.abs(z)),
-        lambda k: f"z = {z[k]:+z.2f} at worst of {z.size} axes, exact skewness {exactly[k]:.3f}",
-    )
+
+    def seen(k: int) -> str:
+        return f"z = {z[k]:+z.2f} at worst of {z.size} axes, exact skewness {exact.skewness[k]:.3f}"
+
+    return worst("skewness", 2 * norm.sf(np.abs(z)), seen)
 
 
 def coverage(groups: Array, level: float = 0.95) -> Check:
@@ -181,3 +175,11 @@ def independence(groups: Array) -> Check:
     total, degrees = float(np.sum(np.square(z))), len(z) * d
     seen = f"chi-square {total:.1f} for {degrees} lags and axes"
     return Check("independence of surfaces", seen, float(chi2.sf(total, degrees)))
+
+
+def along_axes(exact: PrincipalComponents, groups: Array) -> tuple[list[Check], Array]:
+    """Make all checks of surfaces along the axes, shape (seeds, surfaces, axes); and their z-scores."""
+    y = groups.reshape(-1, groups.shape[2])
+    score, z = scores(groups)
+    moments = [variances(exact, y), covariances(y), skewness(exact, y)]
+    return [score, coverage(groups), *moments, independence(groups)], z

@@ -24,25 +24,13 @@ _SEPARATIONS = 12  # separations of a point, at most: the cost of theory grows a
 
 @dataclass(frozen=True)
 class Points:
-    """Monte-Carlo means beside theory, all arrays of one shape.
+    """Monte-Carlo means beside theory, all arrays of one shape."""
 
-    Parameters
-    ----------
-    x : ndarray
-        Where: separations, or whatever a figure is drawn over.
-    mean, stderr : ndarray
-        Monte-Carlo means, and their standard errors.
-    theory : ndarray
-        Exact means.
-    low, high : ndarray, optional
-        Ends of 95 % intervals, nan where there are too few contacts for one; default: those of a normal law.
-    """
-
-    x: Array
-    mean: Array
-    stderr: Array
-    theory: Array
-    low: Array | None = None
+    x: Array  # separations, or whatever a figure is drawn over
+    mean: Array  # by Monte Carlo
+    stderr: Array  # standard errors of these
+    theory: Array  # exact means
+    low: Array | None = None  # ends of 95 % intervals, nan with too few contacts; default: of a normal law
     high: Array | None = None
 
     @property
@@ -221,9 +209,7 @@ def compare(
 
         if isinstance(result, Sweep):
             if laws:
-                raise ValueError(
-                    "laws = True: a sweep does not keep single values; compare one of its scenes"
-                )
+                raise ValueError("laws = True: a sweep keeps no single values; compare one of its scenes")
             points = []
             with told(progress, "points") as tell:
                 for i, point in enumerate(np.ndindex(result.shape)):

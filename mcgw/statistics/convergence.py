@@ -18,18 +18,7 @@ from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import brief
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene
-from mcgw.statistics.checks import (
-    PrincipalComponents,
-    Slope,
-    covariances,
-    coverage,
-    independence,
-    scores,
-    skewness,
-    slope,
-    variances,
-    worst,
-)
+from mcgw.statistics.checks import PrincipalComponents, Slope, along_axes, slope, worst
 from mcgw.statistics.verdict import Check, together, verdict
 
 Sums = Mapping[str, NDArray[Any]]
@@ -133,16 +122,11 @@ def converge(
             f"contact.separations: no height reaches d/sigma = {scene.lowest:g}, so there is nothing to "
             "test; give smaller ones"
         )
-    draw = draw or _own
-    h = np.unique(scene.separations)
+    draw, h = draw or _own, np.unique(scene.separations)
     scene = scene.replace(  # few separations, in order, and a feasible number of surfaces
-        interaction=None,
-        separations=tuple(h[evenly(len(h), 12)].tolist()),
-        n_surfaces=min(max(scene.n_surfaces, 64), 1000),
-        rel_err=None,
-        max_seconds=None,
-        keep="sums",
-    )
+        separations=h[evenly(len(h), 12)], n_surfaces=min(max(scene.n_surfaces, 64), 1000),
+        interaction=None, rel_err=None, max_seconds=None, keep="sums",
+    )  # fmt: skip
     parts = []
     with told(progress, "ensembles") as tell:
         for k in range(seeds):
@@ -158,14 +142,11 @@ def converge(
     slopes: list[Slope] = []
     z = np.empty(0)
     if y.shape[1]:
-        groups = y.reshape(seeds, scene.n_surfaces, -1)
-        score, z = scores(groups)
-        checks += [score, coverage(groups), variances(exact, y), covariances(y), skewness(exact, y)]
-        checks.append(independence(groups))
-        slopes = slope("M", _of_surfaces(exact, y, scene.n_surfaces)) + slope(
-            "N", _of_asperities(scene, draw)
-        )
-        checks += [found.check for found in slopes]
+        found, z = along_axes(exact, y.reshape(seeds, scene.n_surfaces, -1))
+        checks += found
+        slopes += slope("M", _of_surfaces(exact, y, scene.n_surfaces))
+        slopes += slope("N", _of_asperities(scene, draw))
+        checks += [each.check for each in slopes]
     return Convergence(scene, tuple(checks), tuple(slopes), z)
 
 

@@ -7,6 +7,7 @@ Times are of the CPU, all cores together: what else a machine does changes the c
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
 from time import process_time
 from typing import Any
 
@@ -116,6 +117,13 @@ class Answers:
         h = scene.theory.separation_at("load", self._load(scene))
         return float(scene.theory.mean("conductance", h))
 
+    def _by_solving(self, n_surfaces: int, scene: Scene) -> float:
+        (found,) = solutions(scene.replace(n_surfaces=n_surfaces), "load", [self._load(scene)], draw=True)
+        return float(found.surfaces["conductance"].mean())
+
+    def _by_drawing(self, name: str, n_surfaces: int, scene: Scene) -> Array:
+        return simulate(scene, sampler=name, n_surfaces=n_surfaces)[self.q][:, 0]
+
     def _at_load(self, value: float) -> Errors:
         """Error of a conductance; where the mean over specimens is not known, theory's by its order 1/N."""
         known = self.known.get("conductance")
@@ -152,18 +160,9 @@ class Answers:
 
     def sampled(self, name: str, n_surfaces: int) -> Task:
         """Return a way that draws so many surfaces: at the separation, or at the load."""
-
-        def values(scene: Scene) -> Array:
-            return simulate(scene, sampler=name, n_surfaces=n_surfaces)[self.q][:, 0]
-
-        def solved(scene: Scene) -> float:
-            scene = scene.replace(n_surfaces=n_surfaces)
-            (found,) = solutions(scene, "load", [self._load(scene)], draw=True)
-            return float(found.surfaces["conductance"].mean())
-
         if name == SOLVE:
-            return Task(name, n_surfaces, solved, self._at_load)
-        return Task(name, n_surfaces, values, self.of_sample)
+            return Task(name, n_surfaces, partial(self._by_solving, n_surfaces), self._at_load)
+        return Task(name, n_surfaces, partial(self._by_drawing, name, n_surfaces), self.of_sample)
 
 
 def moved(scene: Scene, number: int) -> Scene:
@@ -181,11 +180,9 @@ def sized(answers: Answers, name: str, share: float) -> Iterator[Task]:
         task = answers.sampled(name, size)
         for number in (-2, -1):  # the first compiles
             task.run(moved(answers.scene, number))
-        if 10 * size >= 1000:  # surfaces, from which on tenths of them tell how long they take
+        if size >= 100:  # surfaces, which tell how long ten times as many take
             each = task.seconds[-1] / size
-        task.errors.clear()
-        task.seconds.clear()
-        yield task
+        yield answers.sampled(name, size)
 
 
 def prices(scene: Scene, points: Sequence[Point], names: Sequence[str]) -> Iterator[Way]:

@@ -108,12 +108,8 @@ class Tradeoff(Drawn):
 
     def sheet(self, targets: Sequence[float] = (1e-2,)) -> Table:
         """Return what to run for each answer; targets with one and the same way in one row."""
-        scene = self.scene
-        facts = [
-            ("at", f"d/sigma = {scene.separations[0]:g}; an error is a 95 % bound, 1.96 standard errors"),
-            ("do", self.sentence),
-            ("model", self.worth),
-        ]
+        at = f"d/sigma = {self.scene.separations[0]:g}; an error is a 95 % bound, 1.96 standard errors"
+        facts = [("at", at), ("do", self.sentence), ("model", self.worth)]
         table = self._rows(targets, ("want", "way", "n_surfaces"))
         return Table(table.columns[: None if len(targets) > 1 else -1], "Speed and accuracy", facts)
 
@@ -142,8 +138,8 @@ class Tradeoff(Drawn):
 
     def measurements(self) -> Table:
         """Errors and times of every way at every size."""
-        names = [each.name for each in fields(Point)]
-        return Table(tuple(Column(x, [getattr(p, x) for p in self.points], form=".3g") for x in names))
+        named = ((x.name, [getattr(point, x.name) for point in self.points]) for x in fields(Point))
+        return Table(tuple(Column(name, values, form=".3g") for name, values in named))
 
 
 def tradeoff(

@@ -33,24 +33,13 @@ _FLAT = 1e-3  # curvature down to which the share of flatter summits goes as its
 
 @dataclass(frozen=True)
 class Check:
-    """One check, or several as one.
+    """One check, or several as one."""
 
-    Parameters
-    ----------
-    name, seen : str
-        What is checked, and what was seen.
-    p : float
-        Probability of that, or worse, by chance if theory holds.
-    chi_square, degrees : float, int, optional
-        Of all means at once: sum of squares of independent standard normal numbers, and how many there are,
-        combinations of the means that are Gaussian to within 0.1 in skewness and excess kurtosis.
-    """
-
-    name: str
+    name: str  # what is checked
     seen: str
-    p: float
-    chi_square: float = 0.0
-    degrees: int = 0
+    p: float  # probability of what was seen, or worse, by chance if theory holds
+    chi_square: float = 0.0  # of all means at once: sum of squares of independent standard normal numbers
+    degrees: int = 0  # how many there are: combinations of means, nearly Gaussian (`_SKEW`, `_KURTOSIS`)
 
     @property
     def agrees(self) -> bool:
@@ -95,17 +84,16 @@ class Tested:
     def table(self, scene: Scene) -> Table:
         """Return a row for each quantity and separation."""
         names = np.repeat(self.quantities, len(self.separations)).tolist()
-        return Table(
-            (
-                Column("quantity", names),
-                Column("unit", [scene.quantity(name).unit for name in names]),
-                Column("separation", np.tile(self.separations, len(self.quantities)), SEPARATION, form="g"),
-                Column("mean", self.mean.ravel()),
-                Column("theory", self.theory.ravel()),
-                Column("residual", self.residual.ravel(), form="+z.2f"),
-                Column("p_of_point", [self.verdict.p] * len(names), form=".2g"),
-            )
+        columns = (
+            Column("quantity", names),
+            Column("unit", [scene.quantity(name).unit for name in names]),
+            Column("separation", np.tile(self.separations, len(self.quantities)), SEPARATION, form="g"),
+            Column("mean", self.mean.ravel()),
+            Column("theory", self.theory.ravel()),
+            Column("residual", self.residual.ravel(), form="+z.2f"),
+            Column("p_of_point", [self.verdict.p] * len(names), form=".2g"),
         )
+        return Table(columns)
 
 
 def verdict(ensemble: Ensemble) -> Check:
@@ -137,44 +125,29 @@ def tested(ensemble: Ensemble, most: int) -> Tested:
     scale = np.repeat([quantity_of(q).scale(scene.surface) for q in scene.quantities], len(h))
     exact = scene.n_asperities * parts.mean
     means = np.concatenate([ensemble.mean(q)[index] for q in scene.quantities])
-    difference = means / scale - exact
     asperities = float(scene.n_asperities) * surfaces
 
-    variance = parts.moment(2)
-    varies = np.flatnonzero(variance > 0)
-    unit = np.sqrt(variance[varies])
-    parts = parts.take(varies, unit)
-    errors = np.sqrt(surfaces / scene.n_asperities) / unit
-    z = difference[varies] * errors
-    usable = _gaussian(parts, asperities)
-    residual, counts = np.zeros(len(means)), np.zeros(len(means), dtype=np.bool_)
-    residual[varies], counts[varies] = z, usable
-    parts, z = parts.take(usable), z[usable]
+    unit = np.sqrt(parts.moment(2))  # of one asperity; then errors of the means
+    with np.errstate(divide="ignore", invalid="ignore"):
+        residual = np.where(unit > 0, (means / scale - exact) * surfaces / (unit * np.sqrt(asperities)), 0.0)
+        counts = (unit > 0) & _gaussian(parts.take(np.arange(len(unit)), unit), asperities)
+    parts = parts.take(counts, unit[counts])
     axes = parts.whitening(1e-9)  # least variance of a combination, above rounding errors
     axes = axes[:, _gaussian(parts.turned(axes), asperities)]
-    chi_square = float(np.sum((z @ axes) ** 2))
-    degrees = axes.shape[1]
+    chi_square, degrees = float(np.sum((residual[counts] @ axes) ** 2)), axes.shape[1]
     p = float(chdtrc(degrees, chi_square)) if degrees else 1.0
     seen = f"chi-square {chi_square:.1f} for {degrees} degrees of freedom"
     seen = seen if degrees else "no mean is close enough to Gaussian for a test"
     shape = len(scene.quantities), len(h)
-    return Tested(
-        quantities=scene.quantities,
-        separations=h,
-        mean=means.reshape(shape),
-        theory=(exact * scale).reshape(shape),
-        residual=residual.reshape(shape),
-        counts=counts.reshape(shape),
-        verdict=Check("means", seen, p, chi_square, degrees),
-    )
+    arrays = (x.reshape(shape) for x in (means, exact * scale, residual, counts))
+    return Tested(scene.quantities, h, *arrays, Check("means", seen, p, chi_square, degrees))
 
 
 def _gaussian(parts: Fluctuations, asperities: float) -> Marks:
     """Which terms (columns of unit variance) have a nearly Gaussian mean over so many asperities."""
     with np.errstate(over="ignore", invalid="ignore"):  # where nothing ever touches
-        third, fourth = parts.moment(3), parts.moment(4)
-    skew = np.abs(third) / np.sqrt(asperities)
-    return np.asarray((skew < _SKEW) & (fourth / asperities < _KURTOSIS))
+        skew, kurtosis = np.abs(parts.moment(3)) / np.sqrt(asperities), parts.moment(4) / asperities
+    return np.asarray((skew < _SKEW) & (kurtosis < _KURTOSIS))
 
 
 def bounded_theory(scene: Scene, surfaces: int) -> Model:
@@ -230,9 +203,8 @@ def distances(ensemble: Ensemble) -> list[tuple[float, str, float]]:
     for name in scene.quantities:
         which = [scene.separations.index(x) for x in chosen]
         every = np.sort(ensemble.sums.read(name, 0, m)[:, which].astype(np.float64), axis=0)
-        for at, values in zip(
-            chosen, every.T, strict=True
-        ):  # shares and probabilities jump where values repeat
+        for at, values in zip(chosen, every.T, strict=True):
+            # shares and probabilities jump where values repeat
             x, law = values[evenly(values.size, _PLACES)], scene.theory.distribution(name, at)
             below, upto = (np.searchsorted(values, x, side) / values.size for side in ("left", "right"))
             most = law.cdf(x)

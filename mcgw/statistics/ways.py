@@ -25,10 +25,6 @@ WANTS = {
 }  # fmt: skip
 TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 SOLVE = "solve"  # surfaces drawn one by one, each at its own separation
-_GIVES = {
-    "theory": ("mean", "std", "conductance"), "exact law": ("quantile", "distribution", "conductance"),
-    SOLVE: ("conductance",),
-}  # fmt: skip
 _FASTER = 1.5  # a way must be so much faster than one named before it
 _BOUND = float(ndtri((1 + CONFIDENCE) / 2))
 _FEWEST = {"std": 30, "quantile": 2000, "distribution": 1}  # 20 of 2000 lie beyond the quantile
@@ -36,28 +32,14 @@ _FEWEST = {"std": 30, "quantile": 2000, "distribution": 1}  # 20 of 2000 lie bey
 
 @dataclass(frozen=True)
 class Way:
-    """One way to one answer.
+    """One way to one answer."""
 
-    Parameters
-    ----------
-    name : str
-        "theory", "exact law", "solve", or a sampler.
-    want : str
-        One of `WANTS`.
-    floor : float
-        Error that more surfaces do not reduce.
-    set_up, each : float
-        CPU seconds: before the first surface, and of each; `each` is 0 where none is drawn.
-    measured : bool
-        Whether it was timed; otherwise its price is arithmetic (`mcgw.sampling.expected`).
-    """
-
-    name: str
-    want: str
-    floor: float
-    set_up: float
-    each: float
-    measured: bool = True
+    name: str  # "theory", "exact law", "solve", or a sampler
+    want: str  # one of `WANTS`
+    floor: float  # error that more surfaces do not reduce
+    set_up: float  # CPU seconds before the first surface
+    each: float  # CPU seconds of each surface; 0 where none is drawn
+    measured: bool = True  # whether it was timed; otherwise its price is arithmetic (`expected`)
 
     @property
     def draws(self) -> bool:
@@ -89,14 +71,11 @@ def sampled_ways(scene: Scene) -> list[str]:
 
 
 def wants_of(name: str) -> tuple[str, ...]:
-    """Return what a way can give: no law of surfaces by theory, nor by a sampler whose laws are off."""
-    if name in _GIVES:
-        return _GIVES[name]
-    return (
-        ("mean", "std", "quantile", "distribution", "values")
-        if promise_of(name).one_by_one
-        else ("mean", "std")
-    )
+    """Return what a way that draws can give: no law of surfaces by a sampler whose laws are off."""
+    if name == SOLVE:
+        return ("conductance",)
+    laws = ("quantile", "distribution", "values") if promise_of(name).one_by_one else ()
+    return ("mean", "std", *laws)
 
 
 @kept(64)
@@ -109,11 +88,9 @@ def of_one(scene: Scene, want: str) -> float:
         alone = float(scene.theory.asperities_for("conductance", h, 1.0, given="load"))
         return _BOUND * sqrt(alone / scene.n_asperities)
     if want == "std":  # by the fourth moment of the sum over asperities, about 0 or about the mean
-        excess = float(scene.theory.cumulants(q, h).excess_kurtosis)
-        return _BOUND * sqrt(max(2 + excess, 0.0) / 4)
+        return _BOUND * sqrt(max(2 + float(scene.theory.cumulants(q, h).excess_kurtosis), 0.0) / 4)
     law = scene.theory.distribution(q, h)  # of a quantile by the density there (order statistics)
-    value = float(law.ppf(PROBABILITY))
-    density = value * float(law.pdf(value))
+    density = (value := float(law.ppf(PROBABILITY))) * float(law.pdf(value))
     return _BOUND * sqrt(PROBABILITY * (1 - PROBABILITY)) / density if density > 0 else inf
 
 
@@ -145,18 +122,17 @@ class Advice:
         """Python that carries it out, for a scene of one separation and one quantity, and the load there."""
         if self.way is None:
             return ""
-        h, q = scene.separations[0], scene.quantities[0]
+        h, q, n = scene.separations[0], scene.quantities[0], self.n_surfaces
         if self.want == "conductance" and self.way.name == "theory":
             return f'scene.theory.mean("conductance", scene.theory.separation_at("load", {load:.6g}))'
         if self.want == "conductance":
-            solved = f"mcgw.solve(scene, load={load:.6g}, n_surfaces={max(self.n_surfaces, 2)})"
-            return solved + ('.surfaces["conductance"].mean()' if self.way.draws else '.value["conductance"]')
+            value = '.surfaces["conductance"].mean()' if self.way.draws else '.value["conductance"]'
+            return f"mcgw.solve(scene, load={load:.6g}, n_surfaces={max(n, 2)}){value}"
         if self.way.draws:
-            changes = {"separations": h, "sampler": self.way.name, "n_surfaces": self.n_surfaces}
-            return f"mcgw.simulate(scene, {', '.join(f'{key}={x!r}' for key, x in changes.items())})"
-        law = f'distribution("{q}", {h:g})'
-        found = {"quantile": f"{law}.ppf({PROBABILITY})", "distribution": law}
-        return "scene.theory." + found.get(self.want, f'{self.want}("{q}", {h:g})')
+            return f"mcgw.simulate(scene, separations={h!r}, sampler={self.way.name!r}, n_surfaces={n})"
+        name = "distribution" if self.want == "quantile" else self.want
+        asked = f".ppf({PROBABILITY})" if self.want == "quantile" else ""
+        return f'scene.theory.{name}("{q}", {h:g}){asked}'
 
 
 def advise(want: str, target: float, ways: Sequence[Way], scene: Scene) -> Advice:
