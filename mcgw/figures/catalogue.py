@@ -199,20 +199,7 @@ def _lacking(f: Compared, need: str) -> str:
 
 
 def figures_of(f: Compared, only: Collection[str] = ()) -> Iterator[tuple[str, FigureData | str]]:
-    """Compute the figures of a scene or of a sweep.
-
-    Parameters
-    ----------
-    f : Compared
-        Of a scene its surface, separations, grading, contact law, height law and seed are used.
-    only : collection of str, optional
-        Names of figures; default: all.
-
-    Yields
-    ------
-    (str, FigureData or str)
-        Name of a figure, and its numbers, or why it has no meaning for this scene.
-    """
+    """Yield name and numbers of all figures, or `only` of some; or why one has no meaning for a scene."""
     for name in steps([name for name in CATALOGUE if not only or name in only], "figures"):
         draw, needs = CATALOGUE[name]
         why = next((why for need in needs if (why := _lacking(f, need))), "")

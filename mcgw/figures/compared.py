@@ -96,7 +96,8 @@ class Compared:
     @_once
     def drawn(self, key: Key, h: Array | None = None) -> Ensemble:
         """Ensemble on the same surfaces, at the separations of the scene or at others."""
-        return simulate(self.of(key), **({} if h is None else {"separations": h}))
+        changes: dict[str, Any] = {} if h is None else {"separations": h}
+        return simulate(self.of(key), **changes)
 
     def values(self, key: Key, quantity: str, h: Array) -> Array:
         """Return the sums of each surface at some of the separations of the scene, or at others."""

@@ -2,6 +2,7 @@
 
 import textwrap
 from contextlib import suppress
+from functools import partial
 from typing import Any
 
 import matplotlib as mpl
@@ -9,7 +10,7 @@ import numpy as np
 
 from analytic import Gaussian, Nayak
 from analytic.arrays import Marks
-from mcgw.figures.panels import FigureData, Painter, Panel, words
+from mcgw.figures.panels import FigureData, Panel, words
 from mcgw.figures.style import HOMOGENEOUS, MARKED, MISSING, SAMPLE, THEORY, look, prefixed
 from mcgw.maps.estimates import moments_of
 from mcgw.maps.fit import Fit
@@ -22,65 +23,56 @@ from mcgw.maps.waves import Uncertain
 _POINTS = 700  # points of a map along each side: more do not show
 _MOST_MARKS = 3000
 _WIDTH, _LINES = 42, 27  # of the text, in characters and lines
-_LISTED: Any = {"va": "top", "ha": "left", "family": "monospace", "fontsize": 6.6}
 _BARS: Any = {"bins": "auto", "density": True, "color": SAMPLE, "label": "summits"}
 
 
 def fit_figure(fit: Fit, raw: Topography, ready: Prepared) -> FigureData:
     """Show the fit of a map, as it was read and as it was prepared."""
     missing = f", {raw.missing} points missing" if raw.missing else ""
-    panels = (
-        _map_panel(f"a  as read{missing}", raw, None),
-        _summits_panel(fit, ready),
-        _moments_panel(ready),
-        heights_panel(fit),
-        _curvatures_panel(fit),
-        Panel("f  estimates", "", "", paint=words(_listing(fit), 0, 1, **_LISTED)),
+    paints = (
+        partial(_draw_map, raw, None, f"a  as read{missing}"),
+        partial(_draw_summits, fit, ready),
+        partial(_draw_moments, ready),
+        partial(draw_heights, fit),
+        partial(_draw_curvatures, fit),
+        partial(_draw_listing, fit),
     )
-    return FigureData("", "", panels)
+    return FigureData("", "", tuple(Panel(paint=paint) for paint in paints))
 
 
-def _map_panel(
-    title: str, topography: Topography, seen: Marks | None, more: Painter = lambda _: None
-) -> Panel:
+def _draw_map(topography: Topography, seen: Marks | None, title: str, axis: Any) -> None:
     """Heights in grey; points that do not count have a colour."""
     every = tuple(slice(None, None, max(n // _POINTS, 1)) for n in topography.heights.shape)
     z = topography.heights[every]
     z = np.where(np.isfinite(z) if seen is None else seen[every], z, np.nan)
     unit, prefix = prefixed(float(np.nanstd(z)))
     lateral, of_sides = prefixed(max(topography.size))
-
-    def paint(axis: Any) -> None:
-        low, high = np.nanpercentile(z, (0.5, 99.5)) / unit
-        image = axis.imshow(
-            z / unit, vmin=low, vmax=high, origin="lower", interpolation="nearest",
-            cmap=mpl.colormaps["gray"].with_extremes(bad=MISSING),
-            extent=(0, topography.size[0] / lateral, 0, topography.size[1] / lateral),
-        )  # fmt: skip
-        axis.grid(visible=False)
-        axis.figure.colorbar(image, ax=axis, label=f"height ({prefix}m)", shrink=0.8)
-        more(axis)
-
-    return Panel(title, f"x ({of_sides}m)", f"y ({of_sides}m)", paint=paint)
+    low, high = np.nanpercentile(z, (0.5, 99.5)) / unit
+    image = axis.imshow(
+        z / unit, vmin=low, vmax=high, origin="lower", interpolation="nearest",
+        cmap=mpl.colormaps["gray"].with_extremes(bad=MISSING),
+        extent=(0, topography.size[0] / lateral, 0, topography.size[1] / lateral),
+    )  # fmt: skip
+    axis.grid(visible=False)
+    axis.figure.colorbar(image, ax=axis, label=f"height ({prefix}m)", shrink=0.8)
+    axis.set(title=title, xlabel=f"x ({of_sides}m)", ylabel=f"y ({of_sides}m)")
 
 
-def _summits_panel(fit: Fit, ready: Prepared) -> Panel:
-    """Return the map with its summits, some of them if there are many."""
+def _draw_summits(fit: Fit, ready: Prepared, axis: Any) -> None:
+    """Draw the map with its summits, some of them if there are many."""
     used, (unit, _) = ready.used, prefixed(max(ready.used.size))
     some = slice(None, None, max(fit.summits.size // _MOST_MARKS, 1))
     # the filter took a margin off the map on which they are placed
     margins = ((whole - part) / 2 for whole, part in zip(ready.levelled.size, used.size, strict=True))
     listed = (fit.listed.x, fit.listed.y)
     x, y = ((place[some] - margin) / unit for place, margin in zip(listed, margins, strict=True))
-    size = max(0.4, min(3.0, 90 / np.sqrt(x.size)))
     shown = "" if x.size == fit.summits.size else f", {x.size} shown"
-    title = f"b  as analysed: {fit.summits.size} summits{shown}"
-    return _map_panel(
-        title, used, ready.seen, lambda axis: axis.plot(x, y, "o", ms=size, color=MARKED, mew=0)
-    )
+    _draw_map(used, ready.seen, f"b  as analysed: {fit.summits.size} summits{shown}", axis)
+    size = max(0.4, min(3.0, 90 / np.sqrt(x.size)))
+    axis.plot(x, y, "o", ms=size, color=MARKED, mew=0)
 
 
-def _moments_panel(ready: Prepared) -> Panel:
+def _draw_moments(ready: Prepared, axis: Any) -> None:
     """m0, m2, m4 over those at the cutoff that was chosen, against cutoff."""
     first = ready.asked.cutoff or 2 * max(ready.used.pixel)
     last = min(12.0 * first, min(ready.levelled.size) / 4)  # from the shortest cutoff to the longest
@@ -92,61 +84,53 @@ def _moments_panel(ready: Prepared) -> Panel:
             break
         rows.append((m.m0, m.m2, m.m4))
     unit, prefix = prefixed(float(cutoffs[len(rows) // 2]))
+    axis.set_yscale("log")
+    for values, name in zip(np.array(rows).T, ("$m_0$", "$m_2$", "$m_4$"), strict=True):
+        axis.plot(
+            cutoffs[: len(rows)] / unit, values / values[0], **look(name), ms=4, mfc="white", label=name
+        )
+    axis.set(title="c  moments against cutoff", xlabel=f"cutoff ({prefix}m)")
+    axis.set_ylabel("over those at the first cutoff")
 
-    def paint(axis: Any) -> None:
-        for values, name in zip(np.array(rows).T, ("$m_0$", "$m_2$", "$m_4$"), strict=True):
-            over = values / values[0]
-            axis.plot(cutoffs[: len(rows)] / unit, over, **look(name), ms=4, mfc="white", label=name)
 
-    label, title = "over those at the first cutoff", "c  moments against cutoff"
-    return Panel(title, f"cutoff ({prefix}m)", label, scales=("linear", "log"), paint=paint)
-
-
-def heights_panel(fit: Fit) -> Panel:
+def draw_heights(fit: Fit, axis: Any) -> None:
     """Summit heights and the laws that they may follow."""
     z, alpha = np.linspace(-4.5, 4.5, 241), fit.numbers["alpha"].value
-
-    def paint(axis: Any) -> None:
-        axis.hist(fit.summits / fit.summits.std(), **_BARS)
-        axis.plot(z, Gaussian().pdf(z), color=HOMOGENEOUS, ls="--", label="Gaussian")
-        with suppress(ValueError):  # no isotropic surface has such an alpha
-            axis.plot(z, Nayak(alpha).pdf(z), color=THEORY, label=f"Nayak, α = {alpha:.3g}")
-
+    axis.hist(fit.summits / fit.summits.std(), **_BARS)
+    axis.plot(z, Gaussian().pdf(z), color=HOMOGENEOUS, ls="--", label="Gaussian")
+    with suppress(ValueError):  # no isotropic surface has such an alpha
+        axis.plot(z, Nayak(alpha).pdf(z), color=THEORY, label=f"Nayak, α = {alpha:.3g}")
     label = "summit height, about its mean, over its std"
-    return Panel("d  summit heights", label, "density", paint=paint)
+    axis.set(title="d  summit heights", xlabel=label, ylabel="density")
 
 
-def _curvatures_panel(fit: Fit) -> Panel:
+def _draw_curvatures(fit: Fit, axis: Any) -> None:
     """Summit curvatures over their mean, and Nayak's law (1971), which does not depend on alpha."""
     k = fit.curvatures / fit.curvatures.mean()
     x, mean = np.linspace(0.01, 3, 200), 8 / np.sqrt(3 * np.pi)
     t = mean * x
     density = np.sqrt(3) / (2 * np.sqrt(np.pi)) * (t**2 - 2 + 2 * np.exp(-(t**2) / 2)) * np.exp(-(t**2) / 4)
-
-    def paint(axis: Any) -> None:
-        axis.hist(k[(k > 0) & (k < 3)], **_BARS)
-        axis.plot(x, mean * density, color=THEORY, label="Gaussian surface")
-        axis.set_xlim(0, 3)
-
-    return Panel("e  summit curvatures", "mean curvature over its mean", "density", paint=paint)
+    axis.hist(k[(k > 0) & (k < 3)], **_BARS)
+    axis.plot(x, mean * density, color=THEORY, label="Gaussian surface")
+    axis.set(
+        title="e  summit curvatures", xlabel="mean curvature over its mean", ylabel="density", xlim=(0, 3)
+    )
 
 
-def _listing(fit: Fit) -> str:
-    """Return the results and the steps of preparation."""
+def _draw_listing(fit: Fit, axis: Any) -> None:
+    """Write the results and the steps of preparation."""
     lines = [f"{'':9}{'eta (1/m²)':>12}{'R (m)':>11}{'sigma (m)':>11}"]
     for name, e in fit.estimates.items():
         mark = "*" if name == fit.best else " "
         lines.append(f"{name:8}{mark}{e.eta.value:12.3g}{e.radius.value:11.3g}{e.sigma.value:11.3g}")
         lines.append(f"{'   95 %':9}{_arms(e.eta):>12}{_arms(e.radius):>11}{_arms(e.sigma):>11}")
-    lines += [
-        "* best here",
-        "",
-        f"alpha = {fit.numbers['alpha'].value:.3g} ({_arms(fit.numbers['alpha'])})",
-        "",
-    ]
+    alpha = fit.numbers["alpha"]
+    lines += ["* best here", "", f"alpha = {alpha.value:.3g} ({_arms(alpha)})", ""]
     for text in (*fit.notes, *fit.cautions):
         lines += textwrap.wrap(text, _WIDTH, subsequent_indent="  ")
-    return "\n".join(lines if len(lines) <= _LINES else [*lines[: _LINES - 1], "..."])
+    shown = lines if len(lines) <= _LINES else [*lines[: _LINES - 1], "..."]
+    words("\n".join(shown), axis, (0, 1), va="top", ha="left", family="monospace", fontsize=6.6)
+    axis.set_title("f  estimates")
 
 
 def _arms(x: Uncertain) -> str:

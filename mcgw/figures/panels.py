@@ -22,6 +22,7 @@ from mcgw.statistics.comparison import Points
 Painter = Callable[[Any], None]
 
 GAMMA, SEPARATION, PRESSURE = "grading factor γ", "separation d/σ", "pressure $P/A_n$ (MPa)"
+PANELS: Any = STYLE | {"axes.titlelocation": "left"}
 _COLUMNS = ("panel", "series", "kind", "x", "theory", "mean", "stderr")
 _WIDTH, _NARROWEST = 3.7, 4.4  # inches, of a panel with its labels and of a figure
 _TALL, _RESIDUAL, _TEXTS = 3.2, 0.8, 0.6  # inches, of a panel, residuals under it, title and caption
@@ -44,23 +45,19 @@ class Series:
     points: Points | None = None
 
 
-def words(text: str, x: float = 0.5, y: float = 0.5, **look: Any) -> Painter:
-    """Return what writes a text in place of axes."""
-
-    def paint(axis: Any) -> None:
-        axis.set_axis_off()
-        axis.text(x, y, text, transform=axis.transAxes, **({"ha": "center", "va": "center"} | look))
-
-    return paint
+def words(text: str, axis: Any, at: tuple[float, float] = (0.5, 0.5), **look: Any) -> None:
+    """Write a text in place of axes."""
+    axis.set_axis_off()
+    axis.text(*at, text, transform=axis.transAxes, **({"ha": "center", "va": "center"} | look))
 
 
 @dataclass(frozen=True)
 class Panel:
     """One pair of axes."""
 
-    title: str
-    xlabel: str
-    ylabel: str
+    title: str = ""
+    xlabel: str = ""
+    ylabel: str = ""
     series: tuple[Series, ...] = ()  # lines of theory and points
     scales: tuple[str, str] = ("linear", "linear")  # of x and y
     level: float | None = None  # a value of y worth a line of its own
@@ -104,7 +101,7 @@ def draw(data: FigureData) -> Figure:
     rows = [[*row, *["."] * (columns - len(row))] for row in rows]
     checked = {k for k, panel in enumerate(data.panels) if any(p.varies.any() for *_, p in _known(panel))}
     places = [line for row in rows for line in (row, [f"below {k}" if k in checked else k for k in row])]
-    with mpl.rc_context(STYLE):
+    with mpl.rc_context(PANELS):
         size = max(_WIDTH * columns, _NARROWEST), len(rows) * (_TALL + bool(checked) * _RESIDUAL) + _TEXTS
         figure = Figure(figsize=size, layout="constrained")
         part: Any = figure.subfigures()  # its legend stands below the title of the figure
@@ -161,7 +158,7 @@ def draw_panel(axis: Any, panel: Panel) -> None:
         means = np.concatenate([np.empty(0), *(points.mean for *_, points in _known(panel))])
         touches = np.any(means == 0) and np.any(means > 0)
         axis.set_ylim(bottom=_UNSEEN * means[means > 0].min() if touches else 0.6 * lines[lines > 0].min())
-    axis.set_title(panel.title, loc="left")
+    axis.set_title(panel.title)
     panel.paint(axis)
 
 

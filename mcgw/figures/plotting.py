@@ -1,7 +1,7 @@
 """What ``.plot()`` of each result draws: one pair of axes."""
 
 from dataclasses import replace
-from functools import singledispatch
+from functools import partial, singledispatch
 from typing import Any
 
 import matplotlib as mpl
@@ -13,10 +13,10 @@ from mcgw.ensemble.ensemble import Ensemble, shown
 from mcgw.ensemble.intervals import exact_ends
 from mcgw.ensemble.paired import Paired, Slopes
 from mcgw.ensemble.solved import Solution
-from mcgw.figures.map_fit import heights_panel
-from mcgw.figures.panels import SEPARATION, Panel, Series, draw_panel, keys
-from mcgw.figures.studies import checks_panel, errors_panel, quantity_panel, residuals_panel
-from mcgw.figures.style import MONTE_CARLO, SAMPLE, SEEN, STYLE, THEORY, shown_title, step
+from mcgw.figures.map_fit import draw_heights
+from mcgw.figures.panels import PANELS, SEPARATION, Panel, Series, draw_panel, keys
+from mcgw.figures.studies import draw_checks, draw_errors, draw_residuals, quantity_panel
+from mcgw.figures.style import MONTE_CARLO, SAMPLE, SEEN, THEORY, shown_title, step
 from mcgw.formats.table import evenly
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
@@ -26,28 +26,12 @@ from mcgw.statistics.tradeoff import Tradeoff
 from mcgw.sweeps.sweep import Sweep
 
 _MOST_LINES = 7
-_SAME = {**SEEN, "label": "same surfaces, 95 %"}
 
 
 def draw(result: Any, ax: Any = None, **options: Any) -> Any:
-    """Draw a result.
-
-    Parameters
-    ----------
-    result : object
-        Of a class that has a function below.
-    ax : matplotlib Axes, optional
-        Where; default: new axes of pyplot, so that a notebook shows them.
-    **options
-        Of that function.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        With title, labels and a legend.
-    """
+    """Draw a result on axes, which are returned; by default new ones of pyplot, which a notebook shows."""
     panel = panel_of(result, **options)
-    with mpl.rc_context(STYLE):
+    with mpl.rc_context(PANELS):
         if ax is None:
             import matplotlib.pyplot as plt
 
@@ -59,32 +43,9 @@ def draw(result: Any, ax: Any = None, **options: Any) -> Any:
 
 
 @singledispatch
-def panel_of(result: Any) -> Panel:
+def panel_of(result: Any, **options: Any) -> Panel:
     """Return the panel of a result."""
-    raise TypeError(f"{type(result).__name__}: there is no figure of it")
-
-
-@panel_of.register
-def _(result: Ensemble, *, quantity: str | None = None) -> Panel:
-    """Mean and interval; the band holds 90 % of all surfaces; two thirds where no law is known."""
-    result, quantity = shown(result), quantity or result.quantities[0]
-    q, order = result.scene.quantity(quantity), np.argsort(result.separations, kind="stable")
-    h, mean, std = (x[order] for x in (result.separations, result.mean(quantity), result.std(quantity)))
-    low, high = (x[order] for x in result.interval(quantity))
-    arms = np.nan_to_num([np.minimum(mean - low, 0.999 * mean), high - mean])
-    ends = exact_ends(result.scene, quantity, 0.9) if result.n_surfaces > 1 else None
-
-    def paint(axis: Any) -> None:
-        if result.n_surfaces > 1:
-            least, most = (mean - std, mean + std) if ends is None else (x[order] for x in ends)
-            least = np.maximum(least, mean / 20)  # an axis of logarithms has no place for 0
-            words = "std over surfaces (no quick law)" if ends is None else "90 % of the surfaces"
-            axis.fill_between(h, least, most, color=MONTE_CARLO, alpha=0.18, lw=0, label=words)
-        axis.errorbar(h, mean, arms, **SEEN, fmt="o-", label="mean, 95 %")
-
-    scales = ("linear", "log" if np.any(mean > 0) else "linear")
-    label, title = f"{quantity.replace('_', ' ')} ({q.unit})", f"{result.n_surfaces} surfaces"
-    return Panel(shown_title(result.scene, title), SEPARATION, label, scales=scales, paint=paint)
+    return Panel(paint=partial(draw_on, result, **options))
 
 
 @panel_of.register
@@ -95,46 +56,6 @@ def _(result: Comparison, *, quantity: str | None = None) -> Panel:
     return replace(panel, title=title, ylabel=result.ensemble.scene.quantity(quantity).title)
 
 
-panel_of.register(SweepComparison, lambda result: residuals_panel("all points", result.residuals))
-panel_of.register(Tradeoff, errors_panel)
-panel_of.register(Convergence, lambda result: replace(
-    checks_panel(result), title=f"Statistical convergence {result.word}: p = {result.p:.3g}",
-    xlabel="probability by chance; grey: fails",
-))  # fmt: skip
-panel_of.register(Fit, lambda result: replace(
-    heights_panel(result), title=f"{result.summits.size} summits, sigma = {result.summits.std():.4g} m",
-))  # fmt: skip
-
-
-@panel_of.register
-def _(result: Paired) -> Panel:
-    order = np.argsort(result.separations, kind="stable")
-    columns = [x[order] for x in (result.separations, result.ratio, 1.96 * result.stderr)]
-    label = f"ratio of the mean {result.quantity}"
-    return Panel("", SEPARATION, label, paint=lambda axis: axis.errorbar(*columns, **_SAME, fmt="o-"))
-
-
-@panel_of.register
-def _(result: Sweep, *, quantity: str | None = None) -> Panel:
-    """Return a line a point, from the first to the last along all axes."""
-    order, size = np.argsort(result.separations, kind="stable"), result.axes.size
-    quantity = quantity or result.quantities[0]
-    means, errors = (get(quantity).reshape(size, -1) for get in (result.mean, result.stderr))
-    h, some = result.separations[order], evenly(size, _MOST_LINES)
-
-    def paint(axis: Any) -> None:
-        for k, at in enumerate(some):
-            own = step(result.axes.values_text(at), k, len(some))
-            axis.errorbar(h, means[at][order], 1.96 * errors[at][order], marker="o", ms=3, **own)
-
-    among = f"{len(some)} of {size} points" if len(some) < size else f"{size} points"
-    label = f"mean {quantity.replace('_', ' ')} ({result.scenes[0].quantity(quantity).unit})"
-    scales = ("linear", "log" if np.any(means > 0) else "linear")
-    return Panel(
-        f"{', '.join(result.axes.keys)}: {among}, 95 %", SEPARATION, label, scales=scales, paint=paint
-    )
-
-
 @panel_of.register
 def _(result: Slopes, *, k: int = 0) -> Panel:
     """At one separation, and at the first values of all other keys."""
@@ -142,36 +63,103 @@ def _(result: Slopes, *, k: int = 0) -> Panel:
         np.moveaxis(x, result.axis, 0)[..., k].reshape(len(result.at), -1)[:, 0]
         for x in (result.value, result.stderr, result.theory)
     )
-
     series = Series("theory", result.at, theory, Points(result.at, value, error, theory))
     return Panel("", result.key, f"change of the mean {result.quantity.replace('_', ' ')}", (series,))
 
 
-@panel_of.register
-def _(result: Solution) -> Panel:
+@singledispatch
+def draw_on(result: Any, _: Any) -> None:
+    """Draw a result that has no theory beside it."""
+    raise TypeError(f"{type(result).__name__}: there is no figure of it")
+
+
+@draw_on.register
+def _(result: Ensemble, axis: Any, *, quantity: str | None = None) -> None:
+    """Mean and interval; the band holds 90 % of all surfaces; two thirds where no law is known."""
+    result, quantity = shown(result), quantity or result.quantities[0]
+    q, order = result.scene.quantity(quantity), np.argsort(result.separations, kind="stable")
+    columns = result.separations, result.mean(quantity), result.std(quantity), *result.interval(quantity)
+    h, mean, std, low, high = (x[order] for x in columns)
+    logarithmic = bool(np.any(mean > 0) and np.all(mean >= 0))
+    lowest = mean / 1000 if logarithmic else -np.inf  # an axis of logarithms has no place for 0
+    title, label = f"{result.n_surfaces} surfaces", f"{quantity.replace('_', ' ')} ({q.unit})"
+    axis.set(title=shown_title(result.scene, title), xlabel=SEPARATION, ylabel=label)
+    axis.set_yscale("log" if logarithmic else "linear")
+    if result.n_surfaces > 1:
+        ends = exact_ends(result.scene, quantity, 0.9)
+        least, most = (mean - std, mean + std) if ends is None else (x[order] for x in ends)
+        words = "std over surfaces (no quick law)" if ends is None else "90 % of the surfaces"
+        axis.fill_between(
+            h, np.maximum(least, 50 * lowest), most, color=MONTE_CARLO, alpha=0.18, lw=0, label=words
+        )
+    arms = np.nan_to_num([mean - np.maximum(low, lowest), high - mean])
+    axis.errorbar(h, mean, arms, **SEEN, fmt="o-", label="mean, 95 %")
+
+
+@draw_on.register
+def _(result: SweepComparison, axis: Any) -> None:
+    axis.set_title("all points")
+    draw_residuals(result.residuals, axis)
+
+
+@draw_on.register
+def _(result: Convergence, axis: Any) -> None:
+    draw_checks(result, axis)
+    title = f"Statistical convergence {result.word}: p = {result.p:.3g}"
+    axis.set(title=title, xlabel="probability by chance; grey: fails")
+
+
+@draw_on.register
+def _(result: Fit, axis: Any) -> None:
+    draw_heights(result, axis)
+    axis.set_title(f"{result.summits.size} summits, sigma = {result.summits.std():.4g} m")
+
+
+draw_on.register(Tradeoff, draw_errors)
+
+
+@draw_on.register
+def _(result: Paired, axis: Any) -> None:
+    order = np.argsort(result.separations, kind="stable")
+    columns = (x[order] for x in (result.separations, result.ratio, 1.96 * result.stderr))
+    axis.errorbar(*columns, **SEEN, fmt="o-", label="same surfaces, 95 %")
+    axis.set(xlabel=SEPARATION, ylabel=f"ratio of the mean {result.quantity}")
+
+
+@draw_on.register
+def _(result: Sweep, axis: Any, *, quantity: str | None = None) -> None:
+    """Draw a line a point, from the first to the last along all axes."""
+    order, size = np.argsort(result.separations, kind="stable"), result.axes.size
+    quantity = quantity or result.quantities[0]
+    means, errors = (get(quantity).reshape(size, -1)[:, order] for get in (result.mean, result.stderr))
+    axis.set_yscale("log" if np.any(means > 0) else "linear")
+    some = evenly(size, _MOST_LINES)
+    for k, at in enumerate(some):
+        own = step(result.axes.values_text(at), k, len(some))
+        axis.errorbar(result.separations[order], means[at], 1.96 * errors[at], marker="o", ms=3, **own)
+    among = f"{len(some)} of {size} points" if len(some) < size else f"{size} points"
+    label = f"mean {quantity.replace('_', ' ')} ({result.scenes[0].quantity(quantity).unit})"
+    axis.set(title=f"{', '.join(result.axes.keys)}: {among}, 95 %", xlabel=SEPARATION, ylabel=label)
+
+
+@draw_on.register
+def _(result: Solution, axis: Any) -> None:
     x = result.surfaces["separation"]
-
-    def paint(axis: Any) -> None:
-        axis.hist(x, bins="auto", color=SAMPLE, label=f"{x.size} surfaces")
-        axis.axvline(result.theory["separation"], color=THEORY, label="theory, infinite surface")
-        axis.axvline(x.mean(), color=MONTE_CARLO, ls="--", label="mean of the surfaces")
-        axis.margins(y=0.3)  # room for the legend
-
+    axis.hist(x, bins="auto", color=SAMPLE, label=f"{x.size} surfaces")
+    axis.axvline(result.theory["separation"], color=THEORY, label="theory, infinite surface")
+    axis.axvline(x.mean(), color=MONTE_CARLO, ls="--", label="mean of the surfaces")
+    axis.margins(y=0.3)  # room for the legend
     title = f"at {result.given} = {result.amount:.6g} {quantity_of(result.given).unit}"
-    return Panel(title, SEPARATION, "surfaces", paint=paint)
+    axis.set(title=title, xlabel=SEPARATION, ylabel="surfaces")
 
 
-@panel_of.register
-def _(result: ProfileFit) -> Panel:
-    m = result.moments
-    rms = float(np.sqrt(m.m0))
+@draw_on.register
+def _(result: ProfileFit, axis: Any) -> None:
+    m, rms = result.moments, float(np.sqrt(result.moments.m0))
     z = np.linspace(-4 * rms, m.mean_height + 4 * m.sigma, 401)
-
-    def paint(axis: Any) -> None:
-        axis.plot(z, norm.pdf(z, scale=rms), color=SAMPLE, label=f"all heights, Sq = {rms:.4g} m")
-        summits = norm.pdf(z, m.mean_height, m.sigma)
-        axis.plot(z, summits, color=THEORY, label=f"summits, sigma = {m.sigma:.4g} m")
-        axis.margins(y=0.3)
-
+    summits = norm.pdf(z, m.mean_height, m.sigma)
+    axis.plot(z, norm.pdf(z, scale=rms), color=SAMPLE, label=f"all heights, Sq = {rms:.4g} m")
+    axis.plot(z, summits, color=THEORY, label=f"summits, sigma = {m.sigma:.4g} m")
+    axis.margins(y=0.3)
     title = f"from {len(result.lengths)} profile(s), alpha = {m.alpha:.3g}"
-    return Panel(title, "height above the mean plane (m)", "density (1/m)", paint=paint)
+    axis.set(title=title, xlabel="height above the mean plane (m)", ylabel="density (1/m)")

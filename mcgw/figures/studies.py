@@ -2,6 +2,7 @@
 
 import textwrap
 from collections.abc import Sequence
+from functools import partial
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
@@ -29,7 +30,7 @@ _BIN = 0.5  # standard errors
 _RESIDUAL = "residual (standard errors)"
 _FLOOR, _LEAST = 1e-14, 1e-12  # errors and probabilities that are drawn
 _TWO = 1.96  # standard errors that 95 of 100 keep
-_TIME, _BOUND = "CPU time (s)", "error (95 % bound)"
+_TIME = "CPU time (s)"
 _RULES: dict[str, dict[str, Any]] = {
     **{key: {"color": style.THEORY, "marker": "*"} for key in ("theory", "formula")},
     "exact law": {"color": style.HOMOGENEOUS, "marker": "P"},
@@ -45,20 +46,17 @@ def comparison_figure(comparison: Comparison | SweepComparison) -> FigureData:
     if not isinstance(comparison, Comparison):
         title = f"{shown_title(comparison.sweep.scenes[0], 'Sweep')}: {len(comparison.points)} scenes"
         said = f"Monte Carlo and theory {verdict.word}: p = {verdict.p:.3g} for all points together"
-        panels = (residuals_panel("all points", comparison.residuals), _worst_panel(comparison))
+        every = Panel("all points", paint=partial(draw_residuals, comparison.residuals))
+        panels = (every, Panel(paint=partial(_draw_worst, comparison)))
         shared = "Residuals of points with the same surfaces, and of neighbouring separations, are correlated"
         return FigureData(f"{title}\n{said}", f"{shared}; the verdict allows for this.", panels)
     ensemble, scene = comparison.ensemble, comparison.ensemble.scene
     curves = tuple(quantity_panel(comparison, name) for name in comparison.curves)
     seen = verdict.seen.replace("chi-square", "χ² =").replace(" degrees of freedom", " degrees")  # one line
-    return FigureData(
-        f"{shown_title(scene, 'Ensemble')}\n"
-        f"Monte Carlo and theory {verdict.word}: {seen}, p = {verdict.p:.3g}",
-        f"{ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, "
-        f"{contact_label(scene)}; sampler {ensemble.sampler}, seed {scene.seed}"
-        + (f"; {comparison.of_many}" if comparison.of_many else ""),
-        curves,
-    )
+    said = f"Monte Carlo and theory {verdict.word}: {seen}, p = {verdict.p:.3g}"
+    drawn = f"{ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, {contact_label(scene)}"
+    caption = [f"{drawn}; sampler {ensemble.sampler}, seed {scene.seed}", comparison.of_many]
+    return FigureData(f"{shown_title(scene, 'Ensemble')}\n{said}", "; ".join(filter(None, caption)), curves)
 
 
 def quantity_panel(comparison: Comparison, name: str) -> Panel:
@@ -105,89 +103,76 @@ def spread(
     return Series(label, line, exact, Points(h[known], seen, there * relative / drawn.n_surfaces**0.5, there))
 
 
-def residuals_panel(title: str, z: Array) -> Panel:
+def draw_residuals(z: Array, axis: Any) -> None:
     """Draw a histogram of residuals on its expectation if theory holds; one outlier shows."""
     most = max(4.0, _BIN * np.ceil(np.abs(z).max(initial=0.0) / _BIN))
     x = np.linspace(-most, most, 201)
     expected = len(z) * _BIN * np.exp(-(x**2) / 2) / np.sqrt(2 * np.pi)
-
-    def paint(axis: Any) -> None:
-        bins = np.arange(-most, most + _BIN / 2, _BIN)
-        axis.hist(z, bins, color=style.SAMPLE, label=f"{len(z)} means")
-        axis.plot(x, expected, color=style.THEORY, label="normal: expected if theory holds")
-        axis.set_ylim(0.4, 3 * max(expected.max(), 1.0))
-
-    return Panel(title, _RESIDUAL, "means", scales=("linear", "log"), paint=paint)
+    axis.set(xlabel=_RESIDUAL, ylabel="means", yscale="log")
+    bins = np.arange(-most, most + _BIN / 2, _BIN)
+    axis.hist(z, bins, color=style.SAMPLE, label=f"{len(z)} means")
+    axis.plot(x, expected, color=style.THEORY, label="normal: expected if theory holds")
+    axis.set_ylim(0.4, 3 * max(expected.max(), 1.0))
 
 
-def _worst_panel(comparison: SweepComparison) -> Panel:
+def _draw_worst(comparison: SweepComparison, axis: Any) -> None:
     """Residuals of the least likely point; those that count have a marker."""
     t = comparison.worst[0]
-
-    def paint(axis: Any) -> None:
-        axis.axhspan(-2, 2, color=style.BAND, zorder=0)
-        axis.axhline(0, color=style.LEVEL, lw=0.8, zorder=1)
-        for name, residual, counts in zip(t.quantities, t.residual, t.counts, strict=True):
-            z, label = np.where(counts, residual, np.nan), name.replace("_", " ")
-            axis.plot(t.separations, z, ms=3, mfc="none", lw=1, label=label, **look(name))
-        reach = max(4, 1.5 * np.abs(t.residual[t.counts]).max(initial=0.0))
-        axis.set_ylim(-reach, reach)
-
+    axis.axhspan(-2, 2, color=style.BAND, zorder=0)
+    axis.axhline(0, color=style.LEVEL, lw=0.8, zorder=1)
+    for name, residual, counts in zip(t.quantities, t.residual, t.counts, strict=True):
+        z, label = np.where(counts, residual, np.nan), name.replace("_", " ")
+        axis.plot(t.separations, z, ms=3, mfc="none", lw=1, label=label, **look(name))
+    reach = max(4, 1.5 * np.abs(t.residual[t.counts]).max(initial=0.0))
     at = one_line(comparison.sweep.axes.text(t.number)).replace("$", r"\$")
     title = textwrap.fill(f"worst: {at}; p = {t.verdict.p:.2g} of this point alone", 36)
-    return Panel(title, SEPARATION, _RESIDUAL, paint=paint)
+    axis.set(title=title, xlabel=SEPARATION, ylabel=_RESIDUAL, ylim=(-reach, reach))
 
 
 def convergence_figure(found: "Convergence") -> FigureData:
     """Slopes of the error, z-scores, and the probability of every check."""
-    slopes = {curve.against: _slope_panel(curve) for curve in found.slopes}
-    for name in {"M", "N"} - slopes.keys():
-        slopes[name] = Panel("", "", "", paint=words(f"slope in {name}: too few contacts"))
+    parts = {name: partial(words, f"slope in {name}: too few contacts") for name in ("M", "N")}
+    parts |= {curve.against: partial(_draw_slope, curve) for curve in found.slopes}
+    few = partial(words, "z-scores: too few contacts")
+    scores = Panel("z-scores", paint=partial(draw_residuals, found.scores))
     title = (
         f"{shown_title(found.scene, 'Scene')}\n"
         f"Statistical convergence {found.word}: p = {found.p:.3g} over "
         f"{len(found.checks)} checks (false alarms: 1 in {1 / FALSE_ALARM:.0f})"
     )
-    few = Panel("", "", "", paint=words("z-scores: too few contacts"))
-    scores = residuals_panel("z-scores", found.scores) if found.scores.size else few
-    panels = (slopes["M"], slopes["N"], scores, checks_panel(found))
-    return FigureData(title, "", panels)
+    checks = Panel(paint=partial(draw_checks, found), wide=True)
+    slopes = (Panel(paint=paint) for paint in parts.values())
+    return FigureData(title, "", (*slopes, scores if found.scores.size else Panel(paint=few), checks))
 
 
-def _slope_panel(curve: "Slope") -> Panel:
+def _draw_slope(curve: "Slope", axis: Any) -> None:
+    """Measured errors, and a line that falls with the root of the size."""
     fit = np.exp(np.mean(np.log(curve.errors) + np.log(curve.sizes) / 2)) / np.sqrt(curve.sizes)
-    of_m = curve.against == "M"
-
-    def paint(axis: Any) -> None:
-        bars = _TWO * curve.stderr * curve.errors
-        axis.plot(curve.sizes, fit, color=style.THEORY, label="slope −1/2")
-        look = style.SEEN | {"ms": 4, "fmt": "o", "label": "measured, 95 %"}
-        axis.errorbar(curve.sizes, curve.errors, bars, **look)
-        if not of_m:  # of less than a decade or two, with others named between
-            axis.xaxis.set_minor_locator(NullLocator())
-            axis.set_xticks(curve.sizes, [*map(EngFormatter(), curve.sizes)])
-
-    title = f"slope {curve.value:.4f} ± {_TWO * curve.uncertainty:.4f}".replace("-", "−")
-    ylabel = "rms error (standard deviations)" if of_m else "rms relative error"
-    xlabel = "surfaces $M$" if of_m else "asperities $N$"
-    return Panel(title, xlabel, ylabel, scales=("log", "log"), paint=paint)
+    axis.set(xscale="log", yscale="log")
+    axis.plot(curve.sizes, fit, color=style.THEORY, label="slope −1/2")
+    own = style.SEEN | {"ms": 4, "fmt": "o", "label": "measured, 95 %"}
+    axis.errorbar(curve.sizes, curve.errors, _TWO * curve.stderr * curve.errors, **own)
+    axis.set_title(f"slope {curve.value:.4f} ± {_TWO * curve.uncertainty:.4f}".replace("-", "−"))
+    if curve.against == "M":
+        axis.set(xlabel="surfaces $M$", ylabel="rms error (standard deviations)")
+    else:  # of less than a decade or two, with others named between
+        axis.set(xlabel="asperities $N$", ylabel="rms relative error")
+        axis.xaxis.set_minor_locator(NullLocator())
+        axis.set_xticks(curve.sizes, [*map(EngFormatter(), curve.sizes)])
 
 
-def checks_panel(found: "Convergence") -> Panel:
-    """Return the probability of every check."""
+def draw_checks(found: "Convergence", axis: Any) -> None:
+    """Draw the probability of every check."""
     p = np.array([max(check.p, _LEAST) for check in found.checks])
     limit, rows = FALSE_ALARM / len(p), np.arange(len(p))[::-1]
-
-    def paint(axis: Any) -> None:
-        axis.axvspan(_LEAST / 10, limit, color=style.BAND, zorder=0)
-        axis.hlines(rows, p, 1, color="0.7", lw=1)
-        for some, color, marker in ((p > limit, style.THEORY, "o"), (p <= limit, style.MONTE_CARLO, "X")):
-            axis.scatter(p[some], rows[some], color=color, marker=marker, s=28, zorder=3)
-        axis.set(xlim=(_LEAST / 3, 2.5), ylim=(-0.7, len(p) - 0.3))
-        axis.set_yticks(rows, [check.name for check in found.checks])
-
-    label = "probability by chance; grey: fails (the far left stands for all below 10⁻¹²)"
-    return Panel("", label, "", scales=("log", "linear"), paint=paint, wide=True)
+    axis.set(xscale="log")
+    axis.axvspan(_LEAST / 10, limit, color=style.BAND, zorder=0)
+    axis.hlines(rows, p, 1, color="0.7", lw=1)
+    for some, color, marker in ((p > limit, style.THEORY, "o"), (p <= limit, style.MONTE_CARLO, "X")):
+        axis.scatter(p[some], rows[some], color=color, marker=marker, s=28, zorder=3)
+    axis.set(xlim=(_LEAST / 3, 2.5), ylim=(-0.7, len(p) - 0.3))
+    axis.set_xlabel("probability by chance; grey: fails (the far left stands for all below 10⁻¹²)")
+    axis.set_yticks(rows, [check.name for check in found.checks])
 
 
 def tradeoff_figure(found: "Tradeoff") -> FigureData:
@@ -199,25 +184,23 @@ def tradeoff_figure(found: "Tradeoff") -> FigureData:
     times = [p.seconds for p in found.points]
     times += [way.seconds(n) for way in ways if way.want == "values" or not way.draws]
     within = min(times) / 2, 2 * max(times)
-    panels = (*(errors_panel(found, want, xlim=within) for want in WANTS), _ladder_panel(found))
-    return FigureData(title, found.worth, panels)
+    wants = (Panel(paint=partial(draw_errors, found, want=want, xlim=within)) for want in WANTS)
+    return FigureData(title, found.worth, (*wants, Panel(paint=partial(_draw_ladder, found), wide=True)))
 
 
-def errors_panel(found: "Tradeoff", want: str = "mean", **limits: Any) -> Panel:
+def draw_errors(found: "Tradeoff", axis: Any, want: str = "mean", **limits: Any) -> None:
     """95 % bounds against time: measured points, lines of the expected slope, and ways without draws."""
     kept = [way for way in found.ways if way.want == want and way.measured]
     title = found.words(want) + f" ({found.scene.n_surfaces})" * (want == "values")
+    axis.set(title=title, xlabel=_TIME, ylabel="error (95 % bound)")
     if not kept:
         some = any(way.want == want for way in found.ways)
-        why = "takes longer than the study" if some else "no way to it"
-        return Panel(title, _TIME, _BOUND, paint=words(why))
-
-    def paint(axis: Any) -> None:
-        for way in kept:
-            _draw_way(axis, way, found)
-        axis.set(ylim=(_FLOOR / 3, 3), **limits)
-
-    return Panel(title, _TIME, _BOUND, scales=("log", "log"), paint=paint)
+        words("takes longer than the study" if some else "no way to it", axis)
+        return
+    axis.set(xscale="log", yscale="log")
+    for way in kept:
+        _draw_way(axis, way, found)
+    axis.set(ylim=(_FLOOR / 3, 3), **limits)
 
 
 def _draw_way(axis: Any, way: "Way", found: "Tradeoff") -> None:
@@ -236,26 +219,20 @@ def _draw_way(axis: Any, way: "Way", found: "Tradeoff") -> None:
         axis.axhline(floor, color=own["color"], lw=0.8, ls=":")
 
 
-def _ladder_panel(found: "Tradeoff") -> Panel:
+def _draw_ladder(found: "Tradeoff", axis: Any) -> None:
     """Whole errors of the conductance at a load against time, model by model; their parts as thin lines."""
-    model = found.ladder[0].model
-    known = not np.isnan(model)
-
-    def paint(axis: Any) -> None:
-        if known:
-            axis.axhline(model, color=style.LEVEL, lw=1, label="error of the model")
-        for name, group in groupby(found.ladder, lambda rung: rung.name):
-            rungs, own = [*group], _RULES[name]
-            time, whole = [r.seconds for r in rungs], [r.whole if known else r.drawn for r in rungs]
-            axis.plot(time, whole, **own, ms=5, ls="-" * (len(rungs) > 1), label=name)
-            if len(rungs) == 1:
-                continue
-            if known:
-                axis.plot(time, [r.drawn for r in rungs], color=own["color"], lw=0.8, ls=":")
-            for r, *at in zip(rungs, time, whole, strict=True):
-                text = f"{r.n_surfaces:g}"
-                axis.annotate(text, at, (0, 5), textcoords="offset points", fontsize=7, ha="center")
-
     title = "conductance at its load, by numbers of surfaces or maps; dotted: without the model"
-    whole_error = "whole error (95 % bound)"
-    return Panel(title, _TIME, whole_error, scales=("log", "log"), paint=paint, wide=True)
+    axis.set(title=title, xlabel=_TIME, ylabel="whole error (95 % bound)", xscale="log", yscale="log")
+    if known := not np.isnan(model := found.ladder[0].model):
+        axis.axhline(model, color=style.LEVEL, lw=1, label="error of the model")
+    for name, group in groupby(found.ladder, lambda rung: rung.name):
+        rungs, own = [*group], _RULES[name]
+        time, whole = [r.seconds for r in rungs], [r.whole if known else r.drawn for r in rungs]
+        axis.plot(time, whole, **own, ms=5, ls="-" * (len(rungs) > 1), label=name)
+        if len(rungs) == 1:
+            continue
+        if known:
+            axis.plot(time, [r.drawn for r in rungs], color=own["color"], lw=0.8, ls=":")
+        for r, *at in zip(rungs, time, whole, strict=True):
+            text = f"{r.n_surfaces:g}"
+            axis.annotate(text, at, (0, 5), textcoords="offset points", fontsize=7, ha="center")

@@ -139,8 +139,10 @@ def tested(ensemble: Ensemble, most: int) -> Tested:
     seen = f"chi-square {chi_square:.1f} for {degrees} degrees of freedom"
     seen = seen if degrees else "no mean is close enough to Gaussian for a test"
     shape = len(scene.quantities), len(h)
-    arrays = (x.reshape(shape) for x in (means, exact * scale, residual, counts))
-    return Tested(scene.quantities, h, *arrays, Check("means", seen, p, chi_square, degrees))
+    return Tested(
+        scene.quantities, h, means.reshape(shape), (exact * scale).reshape(shape), residual.reshape(shape),
+        counts.reshape(shape), Check("means", seen, p, chi_square, degrees),
+    )  # fmt: skip
 
 
 def _gaussian(parts: Fluctuations, asperities: float) -> Marks:

@@ -79,7 +79,7 @@ ROWS = [
     ("report @e.h5", "reports.html:report_html", "--pressures 1MPa 2MPa:8MPa:3",
      {"pressures": near([1e6, 2e6, 4e6, 8e6])}),
     (MAP, "maps.synthetic:asperities_of", "--set ensemble.seed=8", {"scene.seed": 8}),
-    ("figures --scene @s.toml", "figures.catalogue:figures_of", "--set ensemble.seed=8", {"f.asked.seed": 8}),
+    ("figures --scene @s.toml", "figures.catalogue:figures_of", "--set ensemble.seed=8", {"f.scene.seed": 8}),
     (MAP, "maps.synthetic:asperities_of", "--surface 7", {"surface": 7}),
     (MAP, "maps.envelope:envelope", "--width 2mm", {"width": 2e-3, "shape": (50, 50)}),
     (MAP, "maps.envelope:envelope", "--shape 60x40", {"shape": (40, 60), "periodic": False, "width": None}),
