@@ -150,6 +150,12 @@ class SpectralMoments:
     def __post_init__(self) -> None:
         check_positive("", **asdict(self))
 
+    @classmethod
+    def with_alpha(cls, alpha: float, summits: Surface) -> "SpectralMoments":
+        """Return those of the Gaussian surface whose summits have this alpha, sigma and radius."""
+        m0, m4 = summits.sigma**2 / (1 - SUMMIT_SPREAD / alpha), 9 * math.pi / (64 * summits.radius**2)
+        return cls(m0, math.sqrt(m0 * m4 / alpha), m4)
+
     @property
     def alpha(self) -> float:
         """Bandwidth ``m0 m4/m2^2``: at least 1.5 for an isotropic surface."""

@@ -15,9 +15,9 @@ from textwrap import wrap
 from typing import Any
 
 import mcgw
-from analytic.laws import by_name
-from mcgw.scene.keys import GRADINGS, HEIGHTS, TABLES as ROWS
+from mcgw.scene.keys import TABLES as ROWS
 from mcgw.scene.kinds import MOST_WHOLE, Either, Kind, List, Number, Plain, Table, Whole, Word
+from mcgw.scene.laws import LAWS
 from mcgw.scene.section import Key
 
 PAGE = Path(__file__).parent / "reference" / "scene.md"
@@ -25,16 +25,11 @@ SCHEMA = Path(__file__).parent.parent / "mcgw" / "scene" / "scene.schema.json"
 _START = "## Top of the file"
 
 Shape = dict[str, Any]
-LAWS: dict[str, dict[str, Any]] = {
-    "grading": GRADINGS,
-    "heights": HEIGHTS,
-    "contact.law": {**by_name, "custom": mcgw.CustomLaw},
-}
 DOCUMENTED: dict[str, tuple[Any, ...]] = {
     "surface": (mcgw.Surface, mcgw.SpectralSurface),
-    "grading": (mcgw.Graded, *GRADINGS.values()),
-    "heights": (*HEIGHTS.values(),),
-    "contact.law": (*by_name.values(), mcgw.CustomLaw),
+    "grading": (mcgw.Graded, *LAWS["grading"].values()),
+    "heights": (*LAWS["heights"].values(),),
+    "contact.law": (*LAWS["contact.law"].values(),),
     "interaction": (mcgw.Interaction,),
 }
 
@@ -52,7 +47,7 @@ def shape_of(kind: Kind) -> Shape:
         case Number():
             return number(kind)
         case Word():
-            return {"enum": list(kind.known)}
+            return {"enum": list(kind.words)}
         case Plain() if kind.type is bool:
             return {"type": "boolean"}
         case Plain():

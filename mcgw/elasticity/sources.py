@@ -12,7 +12,7 @@ from analytic.arrays import Array
 from mcgw.maps.heights_files import read_map
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
-from mcgw.scene.measured import moments_of
+from mcgw.scene.measured import NO_SPECTRUM
 from mcgw.scene.scene import Scene
 
 _POINTS = 8  # a shortest wave: twice as many change area by 2 %, and the rest by less
@@ -39,11 +39,9 @@ def maps_of(source: "Scene | Spectrum | Topography | str | Path | Sequence[Topog
         points, or those of a list are not periodic or not of one size.
     """
     if isinstance(source, Scene):
-        try:
-            moments = moments_of(source)
-        except ValueError as error:
-            raise ValueError(f"the scene {error}") from None
-        return _drawn(Spectrum.with_moments(moments), math.sqrt(source.surface.nominal_area))
+        if source.moments is None:
+            raise ValueError(f"the scene {NO_SPECTRUM}")
+        return _drawn(Spectrum.with_moments(source.moments), math.sqrt(source.surface.nominal_area))
     if isinstance(source, Spectrum):
         return _drawn(source, source.long)
     if isinstance(source, str | Path | Topography):

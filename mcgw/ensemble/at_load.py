@@ -37,7 +37,7 @@ def mean_surface(scene: Scene, given: str, value: float) -> dict[str, float]:
     """Values of `Solution.theory`, without drawing any surface."""
     mean, q = scene.alone.mean, quantity_of(given)
     if given == "nominal_separation":  # the largest one that the asperities feel there
-        sunk = scene.compliance / scene.surface.sigma
+        sunk = scene.theory.compliance
         high = value + max(float(sunk * mean("load", value)), 0.0)
         lowest = min(value, high) - _DEEP
         (h,) = crossing(lambda x, _: value - x + sunk * mean("load", x), np.array([high]), lowest).tolist()
@@ -192,7 +192,7 @@ def answered(scene: Scene, sums: dict[str, Any], names: Iterable[str], h: Any) -
         Separations that the asperities feel.
     """
     filled: Any = scene.filled
-    sunk = scene.compliance / scene.surface.sigma
+    sunk = scene.theory.compliance
     found = {name: in_series(x, scene.series(name)) for name, x in sums.items()}
     for name in names:
         back = "_unloading" * name.endswith("_unloading")

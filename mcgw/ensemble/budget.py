@@ -17,7 +17,6 @@ from mcgw.ensemble.at_load import GAPS, joint_conductance, mean_surface
 from mcgw.formats.table import Column, Shown, Table
 from mcgw.scene.measured import Uncertainty
 from mcgw.scene.scene import Scene
-from mcgw.validity.lookup import moments_of_nayak
 from mcgw.validity.model_error import Validity, percent
 
 LINES = ("drawn surfaces", "specimens", "parameters", "model")
@@ -197,7 +196,7 @@ def moved(scene: Scene, steps: dict[str, float]) -> Scene:
     surface, heights, curvature = scene.surface, scene.heights, scene.summits
     if any(name in factors for name in ("m0", "m2", "m4")):
         assert isinstance(heights, Nayak)  # only these have uncertain moments
-        old = moments_of_nayak(surface, heights.alpha)
+        old = SpectralMoments.with_alpha(heights.alpha, surface)
         m = SpectralMoments(*(getattr(old, name) * factors.get(name, 1.0) for name in ("m0", "m2", "m4")))
         surface, heights = m.surface(surface.nominal_area, surface.E_star), Nayak(m.alpha)
         if isinstance(curvature, RandomCurvature):

@@ -157,7 +157,7 @@ def solutions(
     if scene.rel_err is not None:
         n = surfaces_at_loads(scene, about, given)
         whole, scene = (x.replace(n_surfaces=n, rel_err=None, max_seconds=None) for x in (whole, scene))
-    sunk = whole.compliance / whole.surface.sigma if given == "nominal_separation" else None
+    sunk = whole.theory.compliance if given == "nominal_separation" else None
     loaded = LoadedSurfaces(scene, q, values, about, sunk)
     found = [
         Solution(whole, given, float(value), at, loaded, k)

@@ -31,7 +31,6 @@ from mcgw.scene.kinds import argument
 from mcgw.scene.measured import MOMENTS, SUMMITS, Fitted, Uncertainty
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document
-from mcgw.validity.lookup import moments_of_nayak
 
 Heights = Literal["gaussian", "nayak", "table", "measured", "summits"]
 _EQUAL = 1e-3  # of the standard deviation of the map: summits that differ less are equally high
@@ -209,9 +208,7 @@ def write_scene(scene: Scene, path: Path, measured: Fit | None, comments: list[s
     if isinstance(scene.seed, LeftOut):
         del document["ensemble"]["seed"]
     if isinstance(scene.heights, Nayak) and document.get("summits") == {"curvature": "random"}:
-        m = moments_of_nayak(
-            scene.surface, scene.heights.alpha
-        )  # in place of the summits that follow from it
+        m = SpectralMoments.with_alpha(scene.heights.alpha, scene.surface)  # summits follow from it
         surface = {key: value for key, value in document["surface"].items() if key not in SUMMITS}
         surface = {"m0": m.m0, "m2": m.m2, "m4": m.m4, **surface}
         document = document | {"surface": surface, "heights": {}, "summits": {}}

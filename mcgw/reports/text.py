@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from analytic import Nayak, cooper_mikic_yovanovich, mean_absolute_slope, mikic_elastic, quantity_of
+from analytic import cooper_mikic_yovanovich, mean_absolute_slope, mikic_elastic, quantity_of
 from analytic.arrays import Array
 from mcgw.ensemble.at_load import GAPS
 from mcgw.ensemble.ensemble import Ensemble
@@ -20,7 +20,6 @@ from mcgw.scene.writing import accuracy_facts, contact_facts, joint_text
 from mcgw.statistics.comparison import Comparison
 from mcgw.store.run_plan import Plan
 from mcgw.sweeps.axes import Axes
-from mcgw.validity.lookup import moments_of_nayak
 
 if TYPE_CHECKING:
     from mcgw.sweeps.sweep import Sweep
@@ -168,14 +167,8 @@ def correlation(scene: Scene, pressure: Array) -> Array | None:
     beside an elastic one: see `analytic.cooper_mikic_yovanovich` and `analytic.mikic_elastic`. None without
     moments or hardness, and with a film or layer.
     """
-    film, fitted = scene.film, scene.fitted
-    if fitted is not None:
-        moments = fitted.moments
-    elif isinstance(scene.heights, Nayak):
-        moments = moments_of_nayak(scene.surface, scene.heights.alpha)
-    else:
-        return None
-    if film is None or film.film_resistance or film.layer is not None:
+    film, moments = scene.film, scene.moments
+    if moments is None or film is None or film.film_resistance or film.layer is not None:
         return None
     rms, slope, k = moments.m0**0.5, mean_absolute_slope(moments.m2), 2 / film.rho
     if scene.law.elastic:

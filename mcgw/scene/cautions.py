@@ -55,11 +55,10 @@ def _crowd(scene: Scene) -> Iterator[str]:
     def sparse(separation: float) -> bool:
         return bool(theory.mean("area_fraction", separation) <= _CROWDED)
 
-    if not sparse(h[0]):  # few scenes are crowded; the area falls with the separation
-        last = h[bisect_left(h, True, key=sparse) - 1]
+    if crowded := bisect_left(h, True, key=sparse):  # the area falls with the separation
         apart = " (load too large if d is that of a rigid punch, too small if it is the mean gap)"
         yield (
-            f"up to d/sigma = {last:.3g} more than {_CROWDED:.0%} of the nominal area is in "
+            f"up to d/sigma = {h[crowded - 1]:.3g} more than {_CROWDED:.0%} of the nominal area is in "
             f"contact; asperities interact there{'' if scene.interaction else apart}; the error was not "
             "measured"
         )

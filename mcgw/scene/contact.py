@@ -133,7 +133,7 @@ def interaction_mistakes(scene: Any) -> Iterator[str]:
         return
     h = np.unique(scene.separations)
     try:
-        sinking = 1 + scene.compliance / scene.surface.sigma * scene.alone.slope("load", h) <= 0
+        sinking = 1 + scene.theory.compliance * scene.alone.slope("load", h) <= 0
     except ValueError as error:
         yield str(error)
         return

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 import analytic
-from analytic import HeightLaw, MeasuredRadii, RandomCurvature, Surface
+from analytic import HeightLaw, MeasuredRadii, RandomCurvature, SpectralMoments, Surface
 from analytic.arrays import Array
+from analytic.joint import rise_of_summits
 from analytic.laws import Branch, ContactLaw, Film, Hertz
 from mcgw.machine.memory import kept
 from mcgw.scene.contact import Contact, Joint
 from mcgw.scene.ensemble import Sampling
-from mcgw.scene.measured import Fitted, Uncertainty
+from mcgw.scene.measured import Fitted, Uncertainty, moments_of
 
 if TYPE_CHECKING:
     from analytic.joint import Gap
@@ -97,14 +98,7 @@ class Fields(Flat):
 
     @cached_property
     def theory(self) -> analytic.Model:
-        """The exact model of this scene: modulus, heights, contact law, history, asperities."""
-        if self.interaction is None and self.filled is None:
-            return self.alone
-        return replace(self.alone, interaction=self.interaction, filled=self.filled)
-
-    @cached_property
-    def alone(self) -> analytic.Model:
-        """The same of its asperities alone, without interaction and gas."""
+        """The exact model of this scene: modulus, heights, contact law, history, asperities, joint."""
         return analytic.Model(
             self.surface,
             grading=self.modulus,
@@ -115,25 +109,30 @@ class Fields(Flat):
             film=self.film,
             n_asperities=float(self.n_asperities),
             count=self.count,
+            interaction=self.interaction,
+            filled=self.filled,
         )
+
+    @property
+    def alone(self) -> analytic.Model:
+        """The same of its asperities alone, without interaction and gas."""
+        return self.theory.alone  # type: ignore[no-any-return]
+
+    @property
+    def moments(self) -> SpectralMoments | None:
+        """Spectral moments of its surface, if they are known."""
+        return moments_of(self.surface, self.heights, self.fitted)
 
     @cached_property
     def filled(self) -> "Gap | None":
         """Conduction by gas in the gap of the joint; None without one."""
-        if self.gas is None:
-            return None
-        moments = None if self.fitted is None else self.fitted.moments
-        filled: Gap = self.gas.gap(self.surface, self.heights, moments)
-        return filled
+        return None if self.gas is None else self.gas.gap(self.surface, self.heights, self.moments)
 
     @cached_property
     def rise(self) -> float | None:
         """Height of the mean plane of the summits above that of the surface, over sigma; None if unknown."""
-        from analytic.joint import rise_of_summits  # few ask
-
-        moments = None if self.fitted is None else self.fitted.moments
         rms = None if self.gas is None else self.gas.rms
-        return rise_of_summits(self.surface, self.heights, moments, rms)
+        return rise_of_summits(self.surface, self.heights, self.moments, rms)
 
     @property
     def gap(self) -> str:
@@ -154,12 +153,6 @@ class Fields(Flat):
     def from_mean_plane(self) -> bool:
         """Whether nominal separations are measured from the mean of the deformed plane, as gaps are."""
         return self.interaction is not None and self.interaction.reference == "mean-plane"
-
-    @property
-    def compliance(self) -> float:
-        """How far a load on the surface moves the plane away from the asperities, m/N."""
-        n = float(self.n_asperities)
-        return 0.0 if self.interaction is None else self.interaction.compliance(self.surface, n)
 
     def series(self, quantity: str) -> float:
         """Return what the half-space adds to the inverse of a sum over spots, in units of that sum."""
@@ -194,8 +187,7 @@ class Fields(Flat):
     @property
     def ways(self) -> Branch:
         """Loading or unloading: the ways that its quantities need."""
-        conductance = None if self.film is None else self.film.on(self.surface)
-        return Branch(self.reduced_law, self.unload_from, conductance)
+        return self.theory.ways
 
     @property
     def all_separations(self) -> tuple[float, ...]:

@@ -4,10 +4,11 @@ import math
 
 import analytic
 from analytic.laws import ContactLaw
+from analytic.laws.custom import RootSeries
 from mcgw.scene.contact import Contact, Joint
 from mcgw.scene.ensemble import Sampling
 from mcgw.scene.kinds import FLAG, Either, List, Number, Plain, Table, Whole, Word
-from mcgw.scene.laws import GRADINGS, HEIGHTS, evenly, grading_given, heights_given, piece_of_law
+from mcgw.scene.laws import LAWS, evenly, grading_given, heights_given
 from mcgw.scene.measured import KNOWN, SUMMITS, Fitted, Uncertainty
 from mcgw.scene.section import Key, rows_of
 
@@ -27,12 +28,12 @@ _PLANES = '"body", the undeformed body, or "mean-plane", that of the deformed on
 _FORMULA = "give a list of {edges, coefficients}, one for each piece, as mcgw writes them"
 _LISTS = List(_LISTED, advice="give a list of lists of finite numbers")
 _SERIES = (Key("edges", _LISTED, required=True), Key("coefficients", _LISTS, required=True))
-_PIECES = List(Table(_SERIES, _FORMULA, piece_of_law), advice=_FORMULA)
+_PIECES = List(Table(_SERIES, _FORMULA, RootSeries), advice=_FORMULA)
 _PIECES_EXAMPLE = (
     "[{edges = [-1.0, 1.0], coefficients = [[1.0]]}, {edges = [0.0, 1.1], coefficients = [[1.0]]}]"
 )
 _ERRORS = Table(rows_of(Uncertainty), KNOWN, Uncertainty)
-_BODY = Table((Key("E", YOUNG, required=True), Key("nu", POISSON, default=0.3)), "", analytic.Body)
+BODY = Table((Key("E", YOUNG, required=True), Key("nu", POISSON, default=0.3)), "", analytic.Body)
 _BODY_OF_FILE = Table((Key("file", _FILE, required=True),), "")
 _GRADING = "mcgw.Exponential(gamma), mcgw.Table(s, ratio), or a function of an array of heights"
 _HEIGHTS = "mcgw.HeightTable.of(heights), or a frozen continuous distribution, scipy.stats.lognorm(0.3)"
@@ -50,7 +51,7 @@ TABLES: dict[str, Table] = {
     Key("eta", Number("1/m^2"), "3.0e8", required=True),
     Key("nominal_area", Number("m^2"), "1e-4", required=True),
     Key("E_star", Number("Pa"), "78.6e9", required=True),
-    Key("bodies", List(Either((_BODY, _BODY_OF_FILE)), 2, 2,
+    Key("bodies", List(Either((BODY, _BODY_OF_FILE)), 2, 2,
         "give two, such as [{E = 70e9, nu = 0.33}, {E = inf}], each with its E in Pa"),
         "[{E = 70e9, nu = 0.33}, {E = inf}]",
         "instead of `E_star`: Young's modulus (Pa) and Poisson's ratio (default: 0.3) of the two bodies. Or "
@@ -66,7 +67,7 @@ TABLES: dict[str, Table] = {
         "includes them in its error"),
 ), required=True),
 "grading": Table(words="E*(s)/E* over the reduced height s. Default: 1 at every height.", rows=(
-    Key("law", Word((*GRADINGS,), "", grading_given, _GRADING), '"exponential"',
+    Key("law", Word((*LAWS["grading"],), "", grading_given, _GRADING), '"exponential"',
         "`homogeneous`, `exponential` (Eq. 4), `table` or `series`; default: `exponential` if there is a "
         "`gamma`, otherwise `homogeneous`", "homogeneous"),
     Key("gamma", _ANY, "0.5", "γ of E*(s)/E* = γ − (γ − 1) exp(−s)"),
@@ -85,7 +86,7 @@ TABLES: dict[str, Table] = {
 )),
 "heights": Table(words="Distribution of the summit heights, scaled to mean 0 and standard deviation 1. "
     "Default: Gaussian.", rows=(
-    Key("law", Word((*HEIGHTS,), "", heights_given, _HEIGHTS), '"weibull"',
+    Key("law", Word((*LAWS["heights"],), "", heights_given, _HEIGHTS), '"weibull"',
         "`gaussian`, `exponential`, `weibull`, `nayak`, `table` or `scipy`", "gaussian"),
     Key("shape", Number(low=1, high=100, advice="give a number from 1 to 100 (3.6 has no skewness)"), "2.0",
         "shape of the Weibull law, 1 to 100; 3.6 has no skewness"),
@@ -138,7 +139,7 @@ TABLES: dict[str, Table] = {
 "contact.law": Table(words="Contact law of an asperity, and its constants: [how the laws "
     "differ](../explanation/contact-laws.md). A law without constants may stand under `[contact]` as a word: "
     "`law = \"hertz\"`. Default: Hertz's.", rows=(
-    Key("name", Word(lambda: (*analytic.laws.by_name, "custom"), "",
+    Key("name", Word((*LAWS["contact.law"],), "",
         lambda given: given if isinstance(given, ContactLaw) else None, _OWN_LAW),
         '"kogut-etsion"',
         "`hertz` (default), `power-law-graded`, `coated`, `chang-etsion-bogy`, `zhao-maietta-chang`, "

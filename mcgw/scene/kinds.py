@@ -66,22 +66,17 @@ class Whole(Kind):
 class Word(Kind):
     """One of a few words, or what stands for one: an object that Python gives and a function `accepts`."""
 
-    words: tuple[str, ...] | Callable[[], tuple[str, ...]]
+    words: tuple[str, ...]
     advice: str = ""
     accepts: Callable[[Any], Any] | None = None
     objects: str = ""
     looks = str
 
-    @property
-    def known(self) -> tuple[str, ...]:
-        """These words, which a function may find when needed."""
-        return self.words() if callable(self.words) else self.words
-
     def read(self, path: str, value: Any) -> Any:
         """Return the word or the object."""
         advice, python = self.advice, ""
         try:
-            if isinstance(value, str) and value in self.known:
+            if isinstance(value, str) and value in self.words:
                 return value
             if self.accepts and not isinstance(value, str):
                 if (found := self.accepts(value)) is not None:
@@ -89,8 +84,8 @@ class Word(Kind):
                 python = f"; in Python, give {self.objects}"
         except (TypeError, ValueError) as error:
             advice = str(error)
-        advice = advice or f"choose one of {', '.join(self.known)}{python}"
-        raise mistake(path, value, f"{nearest(value, self.known)}{advice}")
+        advice = advice or f"choose one of {', '.join(self.words)}{python}"
+        raise mistake(path, value, f"{nearest(value, self.words)}{advice}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,7 +162,7 @@ class Table(Kind):
         if not isinstance(value, Mapping):
             raise mistake(path, value, self.advice)
         rows = [Key(name, self.item) for name in value] if self.item else self.rows
-        inner = Section(path, value, {row.name: row for row in rows})
+        inner = Section(path, value, rows)
         made = inner.make(self.make) if self.make else inner.values
         if inner.problems:
             raise SceneError(inner.problems)
@@ -191,11 +186,9 @@ class Either(Kind):
 
 def arguments(given: Mapping[str, Any], kinds: Mapping[str, Kind]) -> dict[str, Any]:
     """Read arguments of these kinds as a table of keys; raises `SceneError`, whose lines name them."""
-    plain = {name: as_toml(value) for name, value in given.items() if name in kinds}
-    section = Section("", plain, {name: Key(name, kind) for name, kind in kinds.items()})
-    if section.problems:
-        raise SceneError(section.problems)
-    return section.values
+    table = Table(tuple(Key(name, kind) for name, kind in kinds.items()))
+    values: dict[str, Any] = table.read("", {name: as_toml(x) for name, x in given.items() if name in kinds})
+    return values
 
 
 def argument(name: str, value: Any, unit: str) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 import analytic
 from analytic import Custom, Grading, HeightLaw, Homogeneous, Surface
 from analytic.arrays import Array
-from analytic.laws import ContactLaw, Hertz
+from analytic.laws import ContactLaw, CustomLaw, Hertz, by_name
 from mcgw.formats.named_files import open_npy, read_text
 from mcgw.formats.units import signed
 from mcgw.scene.section import Section
@@ -22,19 +22,22 @@ from mcgw.scene.section import Section
 OF_YIELD = ("hardness", "poisson")  # which tell beside an elastic law whether contacts yield
 LISTS = ("file", "heights", "radii", "ratios", "resample")  # keys of listed summits
 Listed = tuple[analytic.MeasuredHeights, Array, dict[str, float]]
-GRADINGS: dict[str, Any] = {  # laws by their words in a scene
-    "homogeneous": analytic.Homogeneous,
-    "exponential": analytic.Exponential,
-    "table": analytic.Table,
-    "series": analytic.PiecewiseSeries,
-}
-HEIGHTS: dict[str, Any] = {
-    "gaussian": analytic.Gaussian,
-    "exponential": analytic.ExponentialHeights,
-    "weibull": analytic.Weibull,
-    "nayak": analytic.Nayak,
-    "table": analytic.HeightTable,
-    "scipy": analytic.ScipyHeights,
+LAWS: dict[str, dict[str, Any]] = {  # by their words in the tables of a scene
+    "grading": {
+        "homogeneous": analytic.Homogeneous,
+        "exponential": analytic.Exponential,
+        "table": analytic.Table,
+        "series": analytic.PiecewiseSeries,
+    },
+    "heights": {
+        "gaussian": analytic.Gaussian,
+        "exponential": analytic.ExponentialHeights,
+        "weibull": analytic.Weibull,
+        "nayak": analytic.Nayak,
+        "table": analytic.HeightTable,
+        "scipy": analytic.ScipyHeights,
+    },
+    "contact.law": {**by_name, "custom": CustomLaw},
 }
 _LAW_OF_HEIGHTS = ("support", "breaks", "span", "log_ratio", "pdf")
 
@@ -90,14 +93,21 @@ def heights_given(given: Any) -> HeightLaw | None:
 # --- by keys ---
 
 
-def _law(section: Section, key: str, default: str, makes: Mapping[str, Callable[..., Any]]) -> Any:
-    """Return a law that is given, or make the one whose word stands at `key`, from those keys it takes.
+def _law(section: Section, default: str, **others: Callable[..., Any]) -> Any:
+    """Return a law that is given, or make the one whose word stands there, from those keys it takes.
 
-    Mistakes are noted in the section and give None.
+    By what `others` make of files or names, or else by its class; mistakes are noted and give None.
     """
+    key = "law" if "law" in section.rows else "name"
     law = section.values.get(key, None if key in section.table else default)
+    if law is None:
+        return None  # unknown, so that its keys cannot be checked
     if not isinstance(law, str):
-        return _alone(section, key, law)  # None: unknown, so that its keys cannot be checked
+        for name in section.values:
+            if name not in (key, "negative", *OF_YIELD):
+                section.fail(name, f"give it to the law, {type(law).__name__}, or leave it out")
+        return law
+    makes = LAWS[section.name] | others
     known = {word: signature(make).parameters for word, make in makes.items()} if section.values else {}
     for name in section.values:
         laws = [repr(word) for word, names in known.items() if name in names]
@@ -105,14 +115,6 @@ def _law(section: Section, key: str, default: str, makes: Mapping[str, Callable[
             only = f"it is for {key} = {' or '.join(laws)} only; leave it out"
             section.problems.append(f"{section.path}{name}: unknown key; {only}")
     return section.make(makes[law], f'{key} = "{law}" needs it')
-
-
-def _alone(section: Section, key: str, law: Any) -> Any:
-    """Return a law that is given as an object, beside which no constants of laws stand."""
-    for name in section.values if law is not None else ():
-        if name not in (key, "negative", *OF_YIELD):
-            section.fail(name, f"give it to the law, {type(law).__name__}, or leave it out")
-    return law
 
 
 def grading_of(section: Section, surface: Surface | None, folder: Path) -> Grading:
@@ -124,7 +126,7 @@ def grading_of(section: Section, surface: Surface | None, folder: Path) -> Gradi
         return read_grading(folder / file, surface) if surface else None
 
     default = "exponential" if "gamma" in section.table else "homogeneous"
-    return _law(section, "law", default, GRADINGS | {"table": table}) or Homogeneous()
+    return _law(section, default, table=table) or Homogeneous()
 
 
 def heights_of(section: Section, folder: Path) -> HeightLaw | None:
@@ -138,8 +140,7 @@ def heights_of(section: Section, folder: Path) -> HeightLaw | None:
             return analytic.HeightTable(s, share)
         return analytic.HeightTable.of(sample) if resample else analytic.MeasuredHeights(sample)
 
-    makes = HEIGHTS | {"table": table, "scipy": _of_scipy}
-    return _law(section, "law", "gaussian", makes)  # type: ignore[no-any-return]
+    return _law(section, "gaussian", table=table, scipy=_of_scipy)  # type: ignore[no-any-return]
 
 
 def _of_scipy(name: str = "norm", shapes: Mapping[str, float] | None = None) -> HeightLaw:
@@ -187,14 +188,7 @@ def listed_summits(section: Section, folder: Path) -> Listed | None:
 
 def contact_law(section: Section) -> ContactLaw:
     """Read the law and its constants; mistakes are noted in the section and give Hertz's."""
-    law = section.values.get("name", section.table.get("name", Hertz.name))
-    if isinstance(law, ContactLaw):
-        return _alone(section, "name", law)  # type: ignore[no-any-return]
-    if law == Hertz.name and {*section.table} <= {"name", *OF_YIELD}:
-        return Hertz()
-    from analytic.laws import by_name  # which imports them all
-
-    return _law(section, "name", Hertz.name, {**by_name, "custom": _custom}) or Hertz()
+    return _law(section, Hertz.name, custom=_custom) or Hertz()
 
 
 def _custom(critical: float, limits: Any, load: Any, area: Any, checked: bool = True) -> ContactLaw:
@@ -203,14 +197,7 @@ def _custom(critical: float, limits: Any, load: Any, area: Any, checked: bool = 
         if edges[0] != -edges[-1]:
             reach = f"{edges[0]:g} to {edges[-1]:g}"
             raise ValueError(f"{key}: the first piece reaches from {reach}, not around 0")
-    return analytic.CustomLaw(load, area, limits, critical, checked)
-
-
-def piece_of_law(edges: Any, coefficients: Any) -> Any:
-    """Return one piece of the series of such a law."""
-    from analytic.laws.custom import RootSeries
-
-    return RootSeries(edges, coefficients)
+    return CustomLaw(load, area, limits, critical, checked)
 
 
 def evenly(start: float, stop: float, num: int) -> tuple[float, ...]:

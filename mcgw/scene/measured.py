@@ -13,6 +13,7 @@ from mcgw.scene.kinds import List, Number, Plain
 from mcgw.scene.section import key
 
 MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either describes summits of a surface
+NO_SPECTRUM = "has no spectrum; give m0, m2, m4 under [surface], or a scene written by mcgw fit"
 KNOWN = 'give relative standard errors, such as {sigma = "20 %", radius = "15 %"}'
 _PARAMETERS = (*SUMMITS, *MOMENTS, "E_star")
 _LARGEST = 2.0  # standard error of a logarithm: a factor of 7
@@ -166,23 +167,21 @@ class RoughBody:
         )
 
 
-def moments_of(scene: Any) -> SpectralMoments:
-    """Return the moments of the fitted map of a scene, or of Nayak's heights; ValueError without either."""
-    if scene.fitted is not None:
-        return scene.fitted.moments  # type: ignore[no-any-return]
-    if isinstance(scene.heights, Nayak):
-        from mcgw.validity.lookup import moments_of_nayak  # few have two bodies
-
-        return moments_of_nayak(scene.surface, scene.heights.alpha)
-    raise ValueError("has no spectrum; give m0, m2, m4 under [surface], or a scene written by mcgw fit")
+def moments_of(surface: Surface, heights: Any, fitted: Fitted | None) -> SpectralMoments | None:
+    """Return the moments of the fitted map, or of Nayak's heights; None without either."""
+    if fitted is not None:
+        return fitted.moments
+    return SpectralMoments.with_alpha(heights.alpha, surface) if isinstance(heights, Nayak) else None
 
 
 def body_of(scene: Any) -> RoughBody:
-    """Return the body of a scene on a rigid plane; errors as of `moments_of`, or if it conducts as a pair."""
-    pair = scene.joint.conductivities or ()
+    """Return the body of a scene on a rigid plane; ValueError without a spectrum, or if it is a pair."""
+    moments, pair = moments_of(scene.surface, scene.heights, scene.fitted), scene.joint.conductivities or ()
+    if moments is None:
+        raise ValueError(NO_SPECTRUM)
     if len(set(pair)) > 1:
         raise ValueError(
             f"joint.conductivities = {list(pair)}: those of a pair; a body has equal ones, as [150.0, 150.0]"
         )
     hardness = scene.contact.hardness or getattr(scene.contact.law, "hardness", None)
-    return RoughBody(moments_of(scene), scene.surface.E_star, hardness, tuple(pair[:1]))
+    return RoughBody(moments, scene.surface.E_star, hardness, tuple(pair[:1]))

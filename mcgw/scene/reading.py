@@ -43,39 +43,36 @@ def of_arguments(given: Mapping[str, Any]) -> Values:
 
     Raises TypeError if there is no such part or key, SceneError with one line for each mistake.
     """
-    document: Values = {}
-    parts, changes = {}, {}
+    changes: Values = {}
     for name, value in given.items():
         place = whole_key(name)
         if name in TABLES:
-            keys = None if value is None else _keys_of(name, value)
-            if isinstance(keys, dict):
-                document[name] = {}
-                for key, inner in keys.items():
-                    whole = whole_key(key)
-                    parts[whole if whole.startswith(f"{name}.") else f"{name}.{key}"] = inner
-            elif keys is not None:
-                document[name] = keys
+            changes |= {} if value is None else _keys_of(name, value)
         elif "." in place or place in KEYS[""]:
             changes[place] = value
         else:
             known = [*filter(None, TABLES), *_WHOLE]
             meant = nearest(name, known).rstrip() or f"it has {', '.join(known)}"
             raise TypeError(f"a scene has no {name!r}; {meant}")
-    tables_first = dict(sorted((parts | changes).items()))
-    return of_tables(as_toml(with_changes(document, tables_first)))
+    tables_first = dict(sorted(changes.items()))
+    return of_tables(as_toml(with_changes({}, tables_first)))
 
 
-def _keys_of(name: str, value: Any) -> Any:
-    """Return the keys of what stands for a whole table."""
+def _keys_of(name: str, value: Any) -> Values:
+    """Return a table and each of its keys, dotted, of what stands for a whole table."""
+    keys = value
     if isinstance(value, Spectral):
         summits = {key: x for key, x in _fields(value.surface).items() if key not in SUMMITS}
-        return _fields(value.moments) | summits
-    if isinstance(value, Mapping):
-        return dict(value)
-    if isinstance(value, Graded) or (is_dataclass(value) and name not in ("grading", "heights", "summits")):
-        return _fields(value)
-    return {_OF_WORD[name]: value} if name in _OF_WORD else value
+        keys = _fields(value.moments) | summits
+    elif isinstance(value, Graded) or (is_dataclass(value) and name not in ("grading", "heights", "summits")):
+        keys = _fields(value)
+    elif name in _OF_WORD and not isinstance(value, Mapping):
+        keys = {_OF_WORD[name]: value}
+    if not isinstance(keys, Mapping):
+        return {name: keys}
+    whole = {key: whole_key(key) for key in keys}
+    inside = {key: place if place.startswith(f"{name}.") else f"{name}.{key}" for key, place in whole.items()}
+    return {name: {}} | {inside[key]: x for key, x in keys.items()}
 
 
 def _fields(part: Any) -> Values:
@@ -128,7 +125,7 @@ def of_tables(document: Tables, folder: Path = Path(), seed: Seeds | None = None
         if not isinstance(given, Mapping):
             other = f", or in Python give {table.advice}" if table.advice else ""
             raise mistake(name, given, f"must be a table: write [{name}] above its keys{other}")
-        of[name] = Section(name, given, KEYS[name], INSIDE[name], _WHOLE)
+        of[name] = Section(name, given, table.rows, INSIDE[name], _WHOLE)
     surface, heights, radii = _surface_and_summits(of, folder)
     joint = _joint(of["joint"])
     separations, contact = _contact(of, heights, joint)

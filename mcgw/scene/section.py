@@ -104,15 +104,16 @@ class Section:
         self,
         name: str,
         table: Mapping[str, Any],
-        rows: Mapping[str, Key],
+        rows: Iterable[Key],
         tables: Iterable[str] = (),
         elsewhere: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
-        self.name, self.table, self.rows = name, table, rows
+        self.name, self.table, self.rows = name, table, {row.name: row for row in rows}
         self.path = f"{name}." if name else ""
         self.values: dict[str, Any] = {}
         self.problems: list[str] = []
-        for row in [row for row in rows.values() if row.name in table]:
+        self.given = [row for row in self.rows.values() if row.name in table]
+        for row in self.given:
             try:
                 self.values[row.name] = row.kind.read(self.path + row.name, table[row.name])
             except SceneError as error:
@@ -121,7 +122,7 @@ class Section:
                 self.fail(row.name, f"give {' or '.join(row.needs)} too, or leave it out")
             if others := [other for other in row.excludes if other in table]:
                 self.fail(row.name, f"give it or {' or '.join(others)}, not both")
-        known = [*rows, *tables]
+        known = [*self.rows, *tables]
         unknown = [key for key in table if key not in known]
         for key in unknown[:_MOST_NAMED]:
             short = key[:99]
@@ -146,10 +147,9 @@ class Section:
         """
         known = _signature(make).parameters
         given = others | {name: value for name, value in self.values.items() if name in known}
-        beside = [row for row in self.rows.values() if row.name in self.table]
-        told = {*given, *self.table, *(name for row in beside for name in (*row.needs, *row.excludes))}
-        for name in [x.name for x in known.values() if x.default is Parameter.empty]:
-            if name in self.rows and name not in told:
+        told = {*given, *self.table, *(name for row in self.given for name in (*row.needs, *row.excludes))}
+        for name in [x.name for x in known.values() if x.default is Parameter.empty and x.name not in told]:
+            if name in self.rows:
                 kind = self.rows[name].kind
                 cure = f"give it in {kind.unit}" if kind.unit not in ("", "1") else kind.advice or "give it"
                 self.problems.append(f"{self.path}{name}: missing; {why or cure}")

@@ -12,8 +12,8 @@ import numpy as np
 import analytic
 from analytic import Body as PlainBody, Nayak, SpectralMoments, Surface as Plain, Table, composite_modulus
 from mcgw.formats.units import parse
-from mcgw.scene.keys import KEYS, POISSON, SURFACE_UNITS, YOUNG
-from mcgw.scene.kinds import arguments, as_toml
+from mcgw.scene.keys import BODY, SURFACE_UNITS, TABLES
+from mcgw.scene.kinds import as_toml
 from mcgw.scene.measured import MOMENTS, Uncertainty
 from mcgw.scene.section import SceneError, Section
 
@@ -42,15 +42,7 @@ class UncertainSurface(Plain):
 
 @dataclass(frozen=True)
 class Spectral:
-    """An isotropic Gaussian surface.
-
-    Parameters
-    ----------
-    moments : SpectralMoments
-        Moments of its spectrum.
-    surface : Surface
-        Its summits, with the inverse of their mean curvature as radius.
-    """
+    """An isotropic Gaussian surface by its moments, and summits of the radius of their mean curvature."""
 
     moments: SpectralMoments
     surface: Plain
@@ -87,7 +79,7 @@ def Body(E: float | str, nu: float = 0.3) -> PlainBody:  # noqa: N802 - the door
     >>> mcgw.Body("70 GPa", 0.33)
     Body(E=70000000000.0, nu=0.33)
     """
-    return PlainBody(**arguments({"E": E, "nu": nu}, {"E": YOUNG, "nu": POISSON}))
+    return BODY.read("", as_toml({"E": E, "nu": nu}))  # type: ignore[no-any-return]
 
 
 def Surface(  # noqa: N802 - the door to a class of this name
@@ -186,7 +178,7 @@ def SpectralSurface(  # noqa: N802 - as above
 
 def _read(given: Mapping[str, Any]) -> Any:
     """Read numbers or texts with units; implausible values give a warning."""
-    section = Section("surface", as_toml(given), KEYS["surface"])  # without what is None
+    section = Section("surface", as_toml(given), TABLES["surface"].rows)  # without what is None
     surface = read_surface(section)
     if surface is None:
         raise SceneError(section.problems)

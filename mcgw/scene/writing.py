@@ -16,7 +16,7 @@ from mcgw.machine.terminal import brief
 from mcgw.scene.fields import Fields
 from mcgw.scene.keys import KEYS, SURFACE_UNITS
 from mcgw.scene.kinds import Word, as_toml
-from mcgw.scene.laws import GRADINGS, HEIGHTS
+from mcgw.scene.laws import LAWS
 from mcgw.scene.section import SceneError
 
 _PLANES = {"body": "undeformed body", "mean-plane": "mean deformed plane"}
@@ -35,7 +35,7 @@ def written(part: Any, table: str) -> dict[str, Any]:
 
 def law_table(law: Grading | HeightLaw, table: str) -> dict[str, Any]:
     """Write the table [grading] or [heights] of a law that is data."""
-    words = {kind: word for word, kind in {"grading": GRADINGS, "heights": HEIGHTS}[table].items()}
+    words = {kind: word for word, kind in LAWS[table].items()}
     word = next(words[kind] for kind in type(law).__mro__ if kind in words)
     own = {each.name for each in fields(cast(Any, law)) if each.init}
     return {"law": word, **{key: value for key, value in written(law, table).items() if key in own}}
@@ -57,7 +57,7 @@ def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]
         name = getattr(own, "name", None)
         if name and type(own) is type(getattr(scipy.stats, name, None)):
             return {"law": "scipy", "name": name, "shapes": heights.shapes}
-    elif type(heights) in HEIGHTS.values():  # a subclass may do more
+    elif type(heights) in LAWS["heights"].values():  # a subclass may do more
         return law_table(heights, "heights")
     reason = "is a Python class that a file cannot store; give a distribution of scipy.stats, or its points"
     raise SceneError([f"heights: {type(own).__name__} {reason} as a HeightTable"])

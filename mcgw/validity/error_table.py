@@ -56,18 +56,11 @@ class Expected(NamedTuple):
 
 
 class Grid:
-    """Errors of one model on one kind of maps.
+    """Errors of one model on one kind of maps; x of its rows is alpha, or eta R sigma of caps.
 
-    Between rows everything is linear in the logarithms of x and p; of caps in those of x and p/x, which
-    goes with the separation alone. Outside nothing is said. Rows without a map are of lighter loads than were
-    measured, where theory tells what contact tends to (`runs/validation/limits.py`).
-
-    Parameters
-    ----------
-    table : ndarray
-        Rows of the table: their x is alpha, or eta R sigma of caps.
-    along_separation : bool
-        Whether loads are taken over x.
+    Between rows everything is linear in the logarithms of x and p; of caps `along_separation`, in those of x
+    and p/x, which goes with the separation alone. Outside nothing is said. Rows without a map are of lighter
+    loads than were measured, where theory tells what contact tends to (`runs/validation/limits.py`).
     """
 
     def __init__(self, table: Any, *, along_separation: bool) -> None:
@@ -89,24 +82,20 @@ class Grid:
         contacts lie on them.
         """
         place = round(float(np.interp(np.log(x), np.log(self.x), np.arange(len(self.x)))), _DIGITS)
-        near = [k for k in range(len(self.x)) if abs(k - place) < 1]
-        unit = {k: x / self.x[k] if self.along_separation else 1.0 for k in near}  # of the loads of a row
-        with np.errstate(divide="ignore"):
-            at = np.log(p)
-        shares = np.array([1 - abs(k - place) for k in near])
+        near = {k: 1 - abs(k - place) for k in range(len(self.x)) if abs(k - place) < 1}
+        rows = [self.rows[k].copy() for k in near]
+        for each, k in zip(rows, near, strict=True):
+            each["p"] *= x / self.x[k] if self.along_separation else 1.0
         found = {
-            name: np.tensordot(shares, [_between(self.rows[k], name, unit[k], at) for k in near], 1)
+            name: np.tensordot([*near.values()], [_between(each, name, p) for each in rows], 1)
             for name in COLUMNS
         }
-        solved = {k: self.rows[k][self.rows[k]["maps"] > 0] for k in near}
-        low, high = (
-            pick([unit[k] * solved[k]["p"][end] for k in near]) for pick, end in ((max, 0), (min, -1))
-        )
-        lightest = max(unit[k] * self.rows[k]["p"][np.isfinite(self.rows[k]["area"])][0] for k in near)
-        maps = min(int(rows["maps"].min()) for rows in solved.values())
+        solved = [each[each["maps"] > 0] for each in rows]
+        low, high = max(each["p"][0] for each in solved), min(each["p"][-1] for each in solved)
+        lightest = max(each["p"][np.isfinite(each["area"])][0] for each in rows)
         with np.errstate(divide="ignore", invalid="ignore"):
             spots = np.ones_like(p) if contacts is None else np.sqrt(np.exp(found["area"][1]) / contacts)
-        longest = np.fmax(spots, np.sqrt(np.exp(found["area"][2]) / waves))
+        maps, longest = np.concatenate(solved)["maps"].min(), np.sqrt(np.exp(found["area"][2]) / waves)
         off = {}
         for name, (bias, of_spots, _, steep, theory) in found.items():
             start, of_x, of_contacts = self.scatter["separation" if name == "load" else name]
@@ -114,11 +103,11 @@ class Grid:
             # Few maps determine a mean, and alpha does not determine a spectrum.
             other = 0.0 if self.along_separation else _SPECTRA.get(name, 0.0) * np.log(x / self.x[0])
             unsure = np.hypot(np.hypot(scatter / np.sqrt(maps), other * np.exp(steep)), theory)
-            far = _SURE * np.hypot(scatter * (spots if name == "area" else longest), unsure)
+            far = _SURE * np.hypot(scatter * (spots if name == "area" else np.fmax(spots, longest)), unsure)
             # ratios differ by factors
             off[name] = far if name == "separation" else (1 + bias) * np.expm1(far)
         loads = (low, high) if low <= high else (np.nan, np.nan)
-        return Expected({name: values[0] for name, values in found.items()}, off, maps, loads, lightest)
+        return Expected({name: values[0] for name, values in found.items()}, off, int(maps), loads, lightest)
 
 
 def _scatter_law(rows: Any, name: str) -> Array:
@@ -144,18 +133,20 @@ def _share(rows: Any, name: str) -> Array:
     return np.asarray(std if name == "separation" else std / (1 + rows[name]))
 
 
-def _between(rows: Any, name: str, unit: float, at: Array) -> Array:
+def _between(rows: Any, name: str, p: Array) -> Array:
     """Bias, logarithms of contacts, waves and steepness, and what is unsure, shape (5, loads)."""
     rows = rows[np.isfinite(rows[name])]
     if not rows.size:
-        return np.full((5, *at.shape), np.nan)
+        return np.full((5, *p.shape), np.nan)
     # The table's load is the right one; at a given gap the model is known by its own.
-    points = np.log(unit * rows["p"] * (1 + rows["load"] if name == "load" else 1))
+    points = np.log(rows["p"] * (1 + rows["load"] if name == "load" else 1))
     off = _share(rows, name)
     # Change of the logarithm of the load per unit of gap, between maps.
     steep = np.log(off / rows["separation_std"]) if name == "load" else np.zeros_like(off)
     unsure = np.where(rows["maps"] > 0, 0.0, off)
     numbers = rows[name], np.log(rows["contacts"]), np.log(rows["waves"]), steep, unsure
+    with np.errstate(divide="ignore"):
+        at = np.log(p)
     found = np.array([np.interp(at, points, y) for y in numbers])
     inside = (at >= points[0] - _ROUNDING) & (at <= points[-1] + _ROUNDING)
     return np.where(inside, found, np.nan)

@@ -72,11 +72,9 @@ def validity_of(scene: Any, separations: ArrayLike | None = None) -> Validity:
     unit["separation"] *= rms
     bias = {name: unit[name] * found.bias[name] for name in COLUMNS}
     error = {name: np.abs(bias[name]) + unit[name] * found.off[name] for name in COLUMNS}
-    by = ""  # where alpha is from, unless it was given
-    if fitted is not None:
-        by = " from the fit"
-    elif maps is _GAUSSIAN and model == "one radius":
-        by = f" as eta R sigma = {crowding(scene.surface):.3g} says"
+    of_density = maps is _GAUSSIAN and model == "one radius"  # alpha, unless it was given or fitted
+    by = f" as eta R sigma = {crowding(scene.surface):.3g} says" if of_density else ""
+    by = by if fitted is None else " from the fit"
     low, high = found.loads
     loads = f"{low:.2g} to {high:.2g}" if low <= high else "nothing in common"
     lighter = f"; lighter ones approach {maps.limit}" if p.min() < low and found.lightest < low else ""
@@ -109,12 +107,6 @@ def crowding(surface: Surface) -> float:
     return surface.eta * surface.radius * surface.sigma
 
 
-def moments_of_nayak(surface: Surface, alpha: float) -> SpectralMoments:
-    """Return the moments of the Gaussian surface with this alpha, sigma and R."""
-    m0, m4 = surface.sigma**2 / (1 - SUMMIT_SPREAD / alpha), 9 * math.pi / (64 * surface.radius**2)
-    return SpectralMoments(m0, math.sqrt(m0 * m4 / alpha), m4)
-
-
 def moments_of(surface: Surface) -> SpectralMoments | None:
     """Return the Gaussian surface with this density, curvature and spread of summits; None if there is none.
 
@@ -122,7 +114,7 @@ def moments_of(surface: Surface) -> SpectralMoments | None:
     """
     if crowding(surface) < LEAST_CROWDING:
         return None
-    return moments_of_nayak(surface, SUMMIT_SPREAD + (crowding(surface) / _CROWDING) ** 2)
+    return SpectralMoments.with_alpha(SUMMIT_SPREAD + (crowding(surface) / _CROWDING) ** 2, surface)
 
 
 def not_on_the_map(scene: Any) -> str | None:
@@ -134,7 +126,7 @@ def not_on_the_map(scene: Any) -> str | None:
     if scene.fitted is not None and (reason := _not_gaussian(scene.fitted, scene.surface)) is not None:
         return reason
     if isinstance(scene.heights, Nayak):
-        of_alpha = moments_of_nayak(scene.surface, scene.heights.alpha).surface(1.0, 1.0)
+        of_alpha = SpectralMoments.with_alpha(scene.heights.alpha, scene.surface).surface(1.0, 1.0)
         found, told = crowding(of_alpha), crowding(scene.surface)
         if abs(told / found - 1) > _SAME:
             return (
@@ -148,21 +140,21 @@ def not_on_the_map(scene: Any) -> str | None:
 
 def _not_gaussian(fitted: Any, surface: Surface) -> str | None:
     """Why a map is unlike those that were solved, or a surface unlike its map."""
-    skewed = max(_SKEWED, _BY_CHANCE * math.sqrt(6 / fitted.independent))
+    chance = _BY_CHANCE / math.sqrt(fitted.independent)
     if fitted.lay is not None and fitted.lay > _LAID:
         why = f"lay, mean square slopes {fitted.lay:.3g} : 1"
-    elif abs(fitted.skewness) > min(skewed, _EVER_SKEWED):
+    elif abs(fitted.skewness) > min(max(_SKEWED, chance * math.sqrt(6)), _EVER_SKEWED):
         why = f"skewness {fitted.skewness:.2f}"
-    elif abs(fitted.kurtosis - 3) > max(_BULGED, _BY_CHANCE * math.sqrt(24 / fitted.independent)):
+    elif abs(fitted.kurtosis - 3) > max(_BULGED, chance * math.sqrt(24)):
         why = f"kurtosis {fitted.kurtosis:.2f}"
     elif fitted.agreement is None:
         why = "too few summits"
     elif fitted.agreement > _APART:
         why = f"moments and counts differ by a factor of {fitted.agreement:.3g}"
-    elif (off := fitted.off(surface)) > _APART:
-        return f"eta, R or sigma differs from that of the map by a factor of {off:.3g}"
     else:
-        return None
+        off = fitted.off(surface)
+        differs = f"eta, R or sigma differs from that of the map by a factor of {off:.3g}"
+        return differs if off > _APART else None
     return f"the map is not isotropic and Gaussian ({why})"
 
 
@@ -174,7 +166,7 @@ def place_of(scene: Any) -> tuple[Maps, str, float, float, float]:
     """
     surface, fitted = scene.surface, scene.fitted
     if isinstance(scene.heights, Nayak):
-        moments: SpectralMoments | None = moments_of_nayak(surface, scene.heights.alpha)
+        moments: SpectralMoments | None = SpectralMoments.with_alpha(scene.heights.alpha, surface)
         model = "nayak" if scene.summits is None else "own radii"
     else:
         moments, model = moments_of(surface) if fitted is None else fitted.moments, "one radius"

@@ -49,13 +49,13 @@ def test_of_spots_that_resist_besides(mode):
     film = mcgw.Joint(resistivity=2e-8, film_resistance=1e-14)
     scene = scene_of(mode, joint=film, quantities=("load", "conductance_si"), sampler="tail")
     e = mcgw.simulate(scene)
-    between = scene.film.rho * SURFACE.E_star * scene.compliance / 2
+    between = scene.film.rho * SURFACE.E_star * scene.theory.compliance * SURFACE.sigma / 2
     for i in range(3):
         s = np.maximum(mcgw.heights(scene, i)[:, None] - H, 0)
         a = np.maximum(np.sqrt(SURFACE.radius * SURFACE.sigma * s), 1e-99)
         spots = np.sum(1 / (2e-8 / (4 * a) + 1e-14 / (np.pi * a**2)), axis=0)
         np.testing.assert_allclose(1 / e["conductance_si"][i], 1 / spots + between, rtol=1e-11)
-        wrong = 1 / spots + scene.compliance
+        wrong = 1 / spots + scene.theory.compliance * SURFACE.sigma
         assert (np.abs(wrong * e["conductance_si"][i] - 1) > 1e-3).any()
 
 

@@ -68,7 +68,7 @@ def specimens(scene, load, many, contacts):
             one["yielded"] = (d >= critical).sum(axis=1)
         else:
             stiffness = 2 * x.E_star * (scene.grading(s) * np.sqrt(r * x.sigma * d)).sum(axis=1)
-            one["stiffness"] = 1 / (1 / stiffness + scene.compliance)
+            one["stiffness"] = 1 / (1 / stiffness + scene.theory.compliance * scene.surface.sigma)
         if scene.film is not None:
             a = np.sqrt(r * x.sigma * d) + 1e-100
             spots = 1 / (scene.film.rho / (4 * a) + scene.film.film_resistance / (np.pi * a**2))
