@@ -134,7 +134,7 @@ class Values:
     @property
     def disk(self) -> int:
         """Bytes of the blocks, and of the file they are merged into."""
-        return 2 * self.joined_bytes(self.scene.n_surfaces)
+        return 2 * 8 * self.scene.n_surfaces * self.scene.width
 
     def joined_bytes(self, surfaces: int) -> int:
         """Approximate size of the file of so many surfaces, before compression."""

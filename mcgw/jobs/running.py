@@ -16,7 +16,6 @@ from mcgw.sampling.counts import GROUP
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene, storable
 from mcgw.store.ensembles import open_ensemble, open_sweep
-from mcgw.store.h5_reading import in_files
 from mcgw.store.place import as_recorded
 from mcgw.store.run_plan import Plan
 
@@ -118,9 +117,7 @@ def run(
                 break
     if part:
         return left
-    if scene.keep == "statistics":
-        return open_ensemble(path)
-    return Ensemble(plan.scene, plan.sampler, in_files([(path, plan.total)], plan.scene.tables))
+    return Ensemble(plan.scene, plan.sampler, *plan.held([], plan.total))
 
 
 def _stages(scene: Scene, path: Path) -> Iterator[Scene]:

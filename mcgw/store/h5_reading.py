@@ -8,7 +8,6 @@ whoever wrote the file.
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.arrays import Array
-from mcgw.ensemble.results import GROUP, Results, Rows, Tables
+from mcgw.ensemble.results import GROUP, Tables
 from mcgw.errors import StoreError
 from mcgw.formats.gate import open_h5
 from mcgw.store.h5_writing import FILETYPE, FORMAT, MOST_TEXT, PIECE, checksum, sha_of
@@ -70,23 +69,15 @@ def read_tables(path: Path, group: str = "") -> Tables:
     return found
 
 
-def in_files(files: Sequence[tuple[Path, int]], names: Iterable[str]) -> Results:
-    """Return values that lie in files, of so many surfaces of each; read when they are asked for.
-
-    Then they are compared with no more than the checksums of their chunks.
-    """
-    total = sum(n for _, n in files)
-
-    def read(name: str, rows: slice) -> Array:
-        found, (start, stop, _) = list[Array](), rows.indices(total)
-        for path, n in files:
-            if max(start, 0) < min(stop, n):
-                with _opened(path) as file:
-                    found.append(file[name][max(start, 0) : min(stop, n)])
-            start, stop = start - n, stop - n
-        return found[0] if len(found) == 1 else np.concatenate(found)
-
-    return Results({name: Rows(total, partial(read, name)) for name in names})
+def read_rows(files: Sequence[tuple[Path, int]], name: str, rows: slice) -> Array:
+    """Rows of a table in files, of so many surfaces each; of checksums those of chunks alone are compared."""
+    found, (start, stop, _) = list[Array](), rows.indices(sum(n for _, n in files))
+    for path, n in files:
+        if max(start, 0) < min(stop, n):
+            with _opened(path) as file:
+                found.append(file[name][max(start, 0) : min(stop, n)])
+        start, stop = start - n, stop - n
+    return found[0] if len(found) == 1 else np.concatenate(found)
 
 
 def _compare(table: h5py.Dataset, pieces: Iterable[NDArray[Any]]) -> None:

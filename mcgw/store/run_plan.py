@@ -13,7 +13,7 @@ of valid shards is the only record of progress.
 """
 
 import hashlib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -26,12 +26,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import GROUP, Labelled, Tables, Variable
+from mcgw.ensemble.results import GROUP, Labelled, Results, Rows, Tables, Variable
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import Expected, check_output, sync, whole_file
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from
-from mcgw.store.h5_reading import in_files, look, read_tables
+from mcgw.store.h5_reading import look, read_rows, read_tables
 from mcgw.store.h5_writing import BLOCK_TYPE, FILETYPE, FORMAT, RUN_TYPE, write
 from mcgw.store.identity import another, commit, processor, versions, written
 from mcgw.store.lock import parts_of, refuse_link
@@ -90,6 +90,12 @@ def _write(path: Path, tables: Tables, about: dict[str, Any], expected: Expected
     variables = {name: Variable((), values, "", "") for name, values in tables.items()}
     with whole_file(path, expected=expected) as temporary:
         write(temporary, Labelled(variables, {}, about))
+
+
+def in_files(files: Sequence[tuple[Path, int]], names: Iterable[str]) -> Results:
+    """Return values that lie in files, of so many surfaces each; they are read when they are asked for."""
+    total = sum(n for _, n in files)
+    return Results({name: Rows(total, partial(read_rows, files, name)) for name in names})
 
 
 class Plan:
@@ -163,7 +169,7 @@ class Plan:
         """Return what is kept of some surfaces of one group; it does not depend on `threads`."""
         from mcgw.ensemble.drawing import use_threads  # imports the samplers
 
-        group, first = self.blocks.get(span, (0, span.first))
+        group, first = self.blocks[span] if self.axes else (0, span.first)
         with use_threads(threads):
             return self.reducers[group].tables(first, first + span.n, *go_on)
 
@@ -182,7 +188,7 @@ class Plan:
             for span in spans:
                 if check:
                     check()
-                yield self.blocks.get(span, (0, 0))[0], read_tables(self.shard_path(span))
+                yield self.blocks[span][0] if self.axes else 0, read_tables(self.shard_path(span))
 
         groups = zip(self.reducers, groupby(blocks(), itemgetter(0)), strict=True)
         return [one.held(tables for _, tables in some) for one, (_, some) in groups]
