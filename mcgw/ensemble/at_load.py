@@ -90,11 +90,6 @@ def pressures_of(scene: Scene, number: int) -> Array:
     """Return pressures at a constant ratio, from the lowest to the highest at the scene's separations, Pa.
 
     They are those of the mean surface, where a specimen has a contact or more.
-
-    Raises
-    ------
-    ValueError
-        If fewer than two separations have such.
     """
     alone, h = scene.alone, np.array(scene.separations)
     pressures = np.asarray(alone.mean("pressure", h))
@@ -134,19 +129,8 @@ def controlled(x: Array, known: Sequence[tuple[Array, float]]) -> tuple[float, f
 def exact_moments(scene: Scene, given: str, amount: float) -> Moments:
     """Means and standard deviations over specimens that need no draw: by quadrature, in SI units.
 
-    Of sums, and of answers that are linear in one of them or in the separation.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of the specimens.
-    given, amount : str, float
-        The sum that all have, and its value.
-
-    Returns
-    -------
-    Moments
-        Of what is given alone, where the rest is not known or takes longer than to draw.
+    Of sums, and of answers that are linear in one of them or in the separation; of what is given alone, where
+    the rest is not known or takes longer than to draw.
     """
     known = Moments({given: amount}, {given: 0.0})
     if scene.summits is not None or scene.as_measured or given == "nominal_separation":
@@ -178,18 +162,10 @@ def answered(scene: Scene, sums: dict[str, Any], names: Iterable[str], h: Any) -
     Nominal separations follow from the load of each surface, without a search. Each surface of a joint is
     one network, ``1/h_j = 1/(h_spots + h_gas) + R_bodies A_n``: what passes the gas is constricted by the
     bodies as a whole like what passes the spots. The distance of the mean planes is the separation that the
-    asperities feel, or the nominal one if it is measured from the mean plane itself.
+    asperities feel, `h`, or the nominal one if it is measured from the mean plane itself.
 
-    Parameters
-    ----------
-    scene : Scene
-        Whose surfaces these are.
-    sums : dict of str to ndarray
-        Of the asperities, SI.
-    names : iterable of str
-        What is to be added, of `analytic.SEPARATIONS` and `analytic.JOINT`, in W/(m^2 K) or d/sigma.
-    h : array_like
-        Separations that the asperities feel.
+    To the `sums` of the asperities, SI, `names` of `analytic.SEPARATIONS` and `analytic.JOINT` are added, in
+    d/sigma and W/(m^2 K).
     """
     filled: Any = scene.filled
     sunk = scene.theory.compliance
@@ -212,14 +188,8 @@ def answered(scene: Scene, sums: dict[str, Any], names: Iterable[str], h: Any) -
 def joint_conductance(scene: Scene, spots: Any, apart: Any) -> Any:
     """Return what spots and gas conduct side by side, in series with the bodies, W/(m^2 K): see `answered`.
 
-    Parameters
-    ----------
-    scene : Scene
-        With a joint.
-    spots : float or ndarray
-        Conductance of the spots, and of the bodies in series with them, SI.
-    apart : float or ndarray
-        Distance of the mean planes, d/sigma.
+    `spots` is the conductance of the spots, and of the bodies in series with them, SI; `apart` is the distance
+    of the mean planes, d/sigma.
     """
     assert scene.filled is not None
     assert scene.film is not None

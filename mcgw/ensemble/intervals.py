@@ -34,18 +34,10 @@ _NOTHING = 1e-280  # a mean below it has lost its variance to underflow
 
 @dataclass(frozen=True)
 class Spread:
-    """How one surface differs from the mean one, arrays of shape (separations,).
+    """How one surface differs from the mean one, arrays of shape (separations,)."""
 
-    Parameters
-    ----------
-    relative : ndarray
-        Standard deviation over the mean; infinite where the mean is 0.
-    skewness : ndarray
-        Of the ratio to the mean; 0 where nothing fluctuates.
-    """
-
-    relative: Array
-    skewness: Array
+    relative: Array  # standard deviation over the mean; infinite where the mean is 0
+    skewness: Array  # of the ratio to the mean; 0 where nothing fluctuates
 
     def effective(self, n_surfaces: float | Array) -> Array:
         """Effective number of contacts in so many surfaces: that of equal contacts as uncertain, or as skew.
@@ -130,13 +122,7 @@ def interval_columns(low: ArrayLike, high: ArrayLike, unit: str = "") -> tuple[C
 
 
 def interval_of(scene: Scene, sums: Held, name: str, level: float) -> tuple[Array, Array]:
-    """Return the ends of the interval of a mean, as `Ensemble.interval` says.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
+    """Return the ends of the interval of a mean, as `Ensemble.interval` says."""
     mean, m = sums.mean_and_std(name)[0], sums.rows()
     if scene.as_measured:
         return mean, mean

@@ -47,24 +47,12 @@ def _of_some(excess: Excess, which: Ints) -> Excess:
 
 @dataclass(frozen=True, eq=False)
 class Asperities:
-    """Asperities of some surfaces of a scene, a row for each surface.
+    """Asperities of some surfaces of a scene, arrays of shape (surfaces, most of a surface)."""
 
-    Parameters
-    ----------
-    scene : Scene
-        Whose grading and contact law they have.
-    s : ndarray
-        Reduced heights in descending order, shape (surfaces, most of a surface); `_NOWHERE` after the last.
-    modulus : ndarray
-        E*(s)/E* of each; 1 there.
-    ratios : ndarray or None
-        Radii over that of the surface, where summits have their own.
-    """
-
-    scene: Scene
-    s: Array
-    modulus: Array
-    ratios: Array | None = None
+    scene: Scene  # whose grading and contact law they have
+    s: Array  # reduced heights in descending order; `_NOWHERE` after the last
+    modulus: Array  # E*(s)/E* of each; 1 there
+    ratios: Array | None = None  # radii over that of the surface, where summits have their own
 
     @classmethod
     def of(cls, scene: Scene, counts: Ints, s: Array, ratios: Array | None = None) -> "Asperities":
@@ -106,10 +94,7 @@ class Asperities:
         return self.scene.ways.loading.with_radii(self.ratios)
 
     def terms(self, names: Sequence[str], h: Array) -> Array:
-        """Return what asperities add to quantities, on loading, over the scale of each.
-
-        At the separation of each surface; of shape (quantities, surfaces, asperities).
-        """
+        """Return what asperities add to quantities over their scales: (quantities, surfaces, asperities)."""
         if not self.scene.hertzian:
             return self.branch.terms(names, h[:, None], self.s, self.modulus)
         quantities, above = [quantity_of(name) for name in names], np.maximum(self.s - h[:, None], 0.0)
@@ -130,24 +115,10 @@ class Asperities:
     ) -> Array:
         """Return the largest separation at which a sum of each surface has a value, or jumps past it.
 
-        Parameters
-        ----------
-        q : Quantity
-            Load, area or nominal separation.
-        value : float
-            Positive, SI; d/sigma.
-        lowest : float
-            Reduced separation above which all asperities are listed.
-        about : float, optional
-            What most are near, on either side within its distance from the lowest one.
-        sunk : float, optional
-            At a nominal separation: by how much each newton lowers it.
-
-        Returns
-        -------
-        ndarray
-            Shape (surfaces,); nan where it lies below the lowest separation, or, unless the scene allows such
-            contacts, below an asperity of negative modulus.
+        All asperities above the `lowest` separation are listed; most separations are near `about`, on either
+        side within its distance from the lowest one. At a nominal separation, d/sigma, `sunk` is by how much
+        each newton lowers it. It is nan below the lowest separation, or, unless the scene allows such
+        contacts, below an asperity of negative modulus.
         """
         if sunk is not None:
             load, high = quantity_of("load"), np.maximum(self.highest, value)

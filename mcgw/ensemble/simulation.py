@@ -97,21 +97,13 @@ def simulate(
 
 @dataclass(frozen=True)
 class Forecast:
-    """What `rel_err` needs.
+    """What `rel_err` needs."""
 
-    Parameters
-    ----------
-    needed : dict of str to ndarray
-        Surfaces that each mean needs, shape (separations,); infinite where nothing ever touches.
-    surfaces : int
-        Surfaces that will be drawn, at most the limit.
-    out_of_reach : tuple of (str, float)
-        Quantities and separations that need more than the limit.
-    """
-
-    needed: dict[str, Array]
-    surfaces: int
-    out_of_reach: tuple[tuple[str, float], ...]
+    needed: dict[
+        str, Array
+    ]  # surfaces by quantity, shape (separations,); infinite where nothing ever touches
+    surfaces: int  # that will be drawn, at most the limit
+    out_of_reach: tuple[tuple[str, float], ...]  # quantities and separations that need more than the limit
 
     @property
     def shortfall(self) -> str:
@@ -179,13 +171,7 @@ def checkpoints(limit: int) -> Iterator[int]:
 
 
 def without_rule(scene: Scene) -> Scene:
-    """Return the scene with a number of surfaces in place of its stop rules.
-
-    Warns
-    -----
-    UserWarning
-        If `n_surfaces` is too small for `rel_err`.
-    """
+    """Return the scene with a number of surfaces in place of its stop rules, warning if they are too few."""
     expected = forecast(scene)
     if expected.shortfall:
         warnings.warn(expected.shortfall, stacklevel=3)
@@ -193,23 +179,10 @@ def without_rule(scene: Scene) -> Scene:
 
 
 def surfaces_at_load(scene: Scene, h: float, targets: Mapping[str, float], given: str = "load") -> float:
-    """Surfaces for which the bounds of means at a given load are within their targets.
+    """Surfaces for which 1.96 standard errors of means at a load, or area, are such shares of the means.
 
-    Parameters
-    ----------
-    scene : Scene
-        Whose asperities act alone.
-    h : float
-        Separation of the mean surface at that load.
-    targets : mapping of str to float
-        For each quantity, 1.96 standard errors over the mean.
-    given : str, optional
-        "load" or "area".
-
-    Returns
-    -------
-    float
-        To leading order in the number of asperities; one of `checkpoints`, infinite beyond 1e9.
+    Of a scene whose asperities act alone, and whose mean surface has the separation `h` there. To leading
+    order in the number of asperities; one of `checkpoints`, infinite beyond 1e9.
     """
     model, needed = scene.theory, 1.0
     for name, target in targets.items():
@@ -222,11 +195,7 @@ def surfaces_at_loads(scene: Scene, separations: Sequence[float], given: str) ->
     """Surfaces that `rel_err` asks for at the loads of the mean surface at these separations.
 
     One number for all is kept by load, area, stiffness and conductance, whatever the scene's quantities are.
-
-    Warns
-    -----
-    UserWarning
-        If `n_surfaces` is too small.
+    It warns if `n_surfaces` is too small.
     """
     asked = {name: float(share.min()) for name, share in scene.wanted.items()}
     if not isinstance(scene.rel_err, Mapping):

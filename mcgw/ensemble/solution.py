@@ -133,13 +133,6 @@ def solutions(
     Surfaces approach from far away: if several separations fit, the largest one counts. Under a contact law
     with jumps, the load of a surface jumps at each asperity that yields, and may skip a value; the solution
     is then the separation of the jump, with the load just after it.
-
-    Raises
-    ------
-    ValueError
-        If a value is not reached, is too small for double precision, or is reached only with contacts of
-        negative modulus where the scene does not allow them, if there are too many asperities to draw, or if
-        a surface has none.
     """
     whole, q = scene, quantity_of(given)
     if scene.interaction is not None or scene.gas is not None:  # these change the separation alone
@@ -170,27 +163,13 @@ def solutions(
 
 @dataclass(frozen=True, eq=False)
 class LoadedSurfaces:
-    """Surfaces drawn from a scene, each at its own separation at given values of a sum.
+    """Surfaces drawn from a scene, each at its own separation at given values of a sum."""
 
-    Parameters
-    ----------
-    scene : Scene
-        Its asperities alone, without interaction.
-    given : Quantity
-        Load, area or nominal separation.
-    values : sequence of float
-        SI; d/sigma.
-    about : sequence of float
-        Separation of an infinite surface at each.
-    sunk : float or None
-        At nominal separations: by how much the bodies sink for each newton, over sigma.
-    """
-
-    scene: Scene
-    given: Quantity
-    values: Sequence[float]
-    about: Sequence[float]
-    sunk: float | None
+    scene: Scene  # its asperities alone, without interaction
+    given: Quantity  # load, area or nominal separation
+    values: Sequence[float]  # SI; d/sigma
+    about: Sequence[float]  # separation of an infinite surface at each
+    sunk: float | None  # at nominal separations: by how much the bodies sink for each newton, over sigma
 
     @cached_property
     def _begin(self) -> tuple[Scene, list[float]]:
@@ -231,13 +210,7 @@ class LoadedSurfaces:
         return self.draw(None)
 
     def draw(self, tell: Callable[[float, float], Any] | None) -> list[dict[str, Array]]:
-        """Return `sums`, telling of each part of the surfaces that is drawn.
-
-        Raises
-        ------
-        ValueError
-            If surfaces cannot reach a value, or if there are too many asperities to draw.
-        """
+        """Return `sums`, telling of each part of the surfaces that is drawn."""
         from mcgw.sampling.asperities import listing_sampler, summits_of_many  # compiled loops
 
         drawn = self.drawn

@@ -91,14 +91,7 @@ class Axes:
         return brief(", ".join(map(_short, self.at(number).values())))
 
     def numbers(self, key: str) -> tuple[int, Array]:
-        """Return the dimension that a key is along, and its values, of which neighbours are compared.
-
-        Raises
-        ------
-        ValueError
-            If no such key varies, or it has a single value, a value that is not a number, or the same value
-            twice in a row.
-        """
+        """Return the dimension that a key is along, and its values, of which neighbours are compared."""
         if key not in self.values:
             raise ValueError(f"{key!r} is no axis of this sweep; it has {', '.join(self.keys)}")
         values = self.values[key]
@@ -115,13 +108,7 @@ class Axes:
         return f"{len(values)} from {values[0]} to {values[-1]}"
 
     def place(self, at: "Mapping[str, Any] | Sequence[int] | int") -> int:
-        """Find the number of a point by the values of its keys, or by its index along each dimension.
-
-        Raises
-        ------
-        ValueError
-            If there is no such point, or more than one.
-        """
+        """Find the number of a point by the values of its keys, or by its index along each dimension."""
         if isinstance(at, Mapping):
             if unknown := [key for key in at if key not in self.values]:
                 raise ValueError(f"{unknown[0]!r} is no axis of this sweep; it has {', '.join(self.keys)}")
@@ -139,21 +126,9 @@ class Axes:
 
 
 def axes_of(over: Mapping[str, Any], *, zipped: bool, resolve: Callable[[Any], Any] | None = None) -> Axes:
-    """Read the axes of a sweep and check them.
+    """Read the axes of a sweep and check them, with a line for each mistake.
 
-    Parameters
-    ----------
-    over : mapping
-        Values of each key.
-    zipped : bool
-        As of `Axes`.
-    resolve : callable, optional
-        Turns a Python function that stands for a grading into a grading that is data.
-
-    Raises
-    ------
-    SceneError
-        With a line for each mistake.
+    `resolve` turns a Python function that stands for a grading into a grading that is data.
     """
     problems = [] if over else ["sweep: give at least one key of a scene and its values"]
     values: dict[str, tuple[Any, ...]] = {}

@@ -47,14 +47,9 @@ _MOST_TOLD = 20  # most mistakes that are shown
 
 
 class Group(Values):
-    """Points that share their surfaces: their means, variances and covariances.
+    """Points that share their surfaces: means, variances and covariances of those scenes that are computed.
 
-    Parameters
-    ----------
-    computed : tuple of Scene
-        Those whose sums are computed for every surface.
-    edges : tuple of float
-        Common edges of cells, where the cells of the scenes would differ (`common_edges`).
+    `edges` are common to all cells, where the cells of the scenes would differ (`common_edges`).
     """
 
     disk = 0  # statistics take hardly any
@@ -128,11 +123,8 @@ def _alike(keys: Sequence[Any]) -> list[list[int]]:
 def combined(scenes: Sequence[Scene]) -> tuple[Sequence[int], list[tuple[Ints, Array]]]:
     """Scenes that differ in their gradings alone, as weighted means of some of them.
 
-    Returns
-    -------
-    (sequence of int, list of (ndarray, ndarray))
-        Those of which all are means: two; or all, if they are few, a grading is no exponential one, or sums
-        are not linear in it. For each scene which of them it is made of, and their weights.
+    These are two; or all, if they are few, a grading is no exponential one, or sums are not linear in it. Of
+    each scene follow which of them it is made of, and their weights.
     """
     one = scenes[0]
     # All that is kept must be linear in a modulus that is not negative.
@@ -163,21 +155,11 @@ def weighted(reducers: Iterable[Values], tell: Callable[[float, float], object])
 
 @dataclass(frozen=True, eq=False)
 class Points(Sequence[Scene]):
-    """The scenes of a sweep, each made when it is needed.
+    """The scenes of a sweep, each made when it is needed."""
 
-    Parameters
-    ----------
-    document : dict
-        Tables of the base scene.
-    axes : Axes
-        What they differ in.
-    drawn : tuple of int
-        Number of surfaces of each point, once it is known.
-    """
-
-    document: dict[str, Any]
-    axes: Axes
-    drawn: tuple[int, ...] = ()
+    document: dict[str, Any]  # tables of the base scene
+    axes: Axes  # what they differ in
+    drawn: tuple[int, ...] = ()  # number of surfaces of each point, once it is known
     _made: dict[int, Scene] = field(default_factory=dict, init=False)
 
     @classmethod
@@ -231,13 +213,7 @@ class Points(Sequence[Scene]):
 
     @property
     def groups(self) -> list[Group]:
-        """Points that share their surfaces.
-
-        Raises
-        ------
-        SceneError
-            With the mistakes of all points, each with its point.
-        """
+        """Points that share their surfaces; an error tells the mistakes of all points, and where each is."""
         return self._grouped[0]
 
     def answered(self, pooled: Sequence[Pooled], places: Sequence[Place] = ()) -> Sweep:
@@ -247,13 +223,7 @@ class Points(Sequence[Scene]):
         return Sweep(self.axes, scenes, tuple(places), tuple(pooled))
 
     def in_memory(self, tell: Callable[[float, float], object]) -> Sweep:
-        """Draw all of it; `tell` is told of (done, total) surfaces, weighted by their cost.
-
-        Raises
-        ------
-        StoreError
-            If the memory is too small.
-        """
+        """Draw all of it; `tell` is told of (done, total) surfaces, weighted by their cost."""
         note, done, pooled = weighted(self.groups, tell), 0.0, list[Pooled]()
         for group in self.groups:
             group.check()
