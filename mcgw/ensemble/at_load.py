@@ -188,8 +188,8 @@ def answered(scene: Scene, sums: dict[str, Any], names: Iterable[str], h: Any) -
 def joint_conductance(scene: Scene, spots: Any, apart: Any) -> Any:
     """Return what spots and gas conduct side by side, in series with the bodies, W/(m^2 K): see `answered`.
 
-    `spots` is the conductance of the spots, and of the bodies in series with them, SI; `apart` is the distance
-    of the mean planes, d/sigma.
+    `spots` is the conductance of the spots, and of the bodies in series with them, SI; `apart` how far the
+    mean planes are from each other, d/sigma.
     """
     assert scene.filled is not None
     assert scene.film is not None
