@@ -24,11 +24,7 @@ _SOFTER = np.linspace(0.2, 1, 81), np.array([0.2, 0.4, 0.6, 0.8])
 _MODULI = np.linspace(0.2, 2, 73), np.array([0.2, 0.4, 0.6, 0.8, 1.2, 1.4, 1.6, 1.8, 2.0])
 _LOADED = np.linspace(0.2, 2, 46), np.array([0.2, 0.4, 0.6, 0.8, 1.2, 1.5, 2.0])
 _PSI = r"$\psi/\psi_\mathrm{hom}$"
-_TITLES = {
-    "number": "b  mean over the contacts",
-    "area": "c  weighted by area",
-    "load": "d  weighted by load",
-}
+_WEIGHTS = {"number": "mean over the contacts", "area": "weighted by area", "load": "weighted by load"}
 _GRADES = ("γ = 2", "γ = 1", "γ = 0.5", "γ = 0.2")
 
 
@@ -67,7 +63,7 @@ def against_separation(f: Compared, *, title: str, quantity: str, words: str, un
 def at_separation(f: Compared, *, title: str, symbol: str, how: Mean) -> FigureData:
     """Show a ratio; of a sweep a panel for stiffer and one for softer tips."""
     parts = (("a  stiffer tips", _STIFFER), ("b  softer tips", _SOFTER)) if f.swept else (("", _STIFFER),)
-    panels = (ratio(f, name, symbol, how, *gammas, _AT) for name, gammas in parts)
+    panels = (ratio(f, name, symbol, how, gammas, _AT) for name, gammas in parts)
     said = "" if f.swept else f"Reference: {f.reference}, the same surface. "
     return FigureData(title, said + f.caption(), tuple(panels))
 
@@ -81,7 +77,7 @@ def equal_load(f: Compared) -> FigureData:
     panels = []
     for key, (name, how) in zip("abcd", shown, strict=False):
         symbol = quantity_of(*how.above).symbol.removesuffix("ρ")  # the resistivity is that of both
-        panels.append(ratio(f, f"{key}  {name}", f"{symbol}/{symbol}", how, *_LOADED, _AT_LOAD))
+        panels.append(ratio(f, f"{key}  {name}", f"{symbol}/{symbol}", how, _LOADED, _AT_LOAD))
     title = "At equal load the trend reverses: stiffer tips conduct less" if f.swept else "At the same load"
     which = "homogeneous surface" if f.swept else f"reference ({f.reference}, the same surface)"
     return FigureData(title, f"d/σ is that of the {which} and sets the load. {f.caption()}", tuple(panels))
@@ -92,11 +88,9 @@ def area_and_load(f: Compared) -> FigureData:
     area, areas = f.scene.surface.nominal_area, []
     for label in _GRADES if f.swept else f.all:
         one = over_separation(f, label, Mean(("area",), factor=1 / area))
-        pressure, points = f.theory(label, "load", f.line) / area / 1e6, one.points
-        if points:
-            loads = f.values(label, "load", points.x).mean(axis=0)
-            points = replace(points, x=loads / area / 1e6)
-        areas.append(replace(one, x=pressure, points=points))
+        if points := one.points:
+            points = replace(points, x=f.values(label, "load", points.x).mean(axis=0) / area / 1e6)
+        areas.append(replace(one, x=f.theory(label, "load", f.line) / area / 1e6, points=points))
     panel = Panel("", PRESSURE, r"real area fraction $A/A_n$", tuple(areas), ("log", "log"))
     if not f.swept:
         return FigureData("Real area against load", f.caption(), (panel,))
@@ -104,10 +98,8 @@ def area_and_load(f: Compared) -> FigureData:
     factor = np.pi * f.scene.surface.radius
     exponent = Mean(("contacts", "load"), ("area", "stiffness"), factor=factor)
     exponents = tuple(over_separation(f, label, exponent) for label in _GRADES)
-    panels = (
-        replace(panel, title="a  real area"),
-        Panel("b  local exponent", SEPARATION, r"$d\,\ln A/d\,\ln P$", exponents, level=1.0),
-    )
+    local = Panel("b  local exponent", SEPARATION, r"$d\,\ln A/d\,\ln P$", exponents, level=1.0)
+    panels = replace(panel, title="a  real area"), local
     return FigureData("Real area against load, and its local exponent", f.caption(), panels)
 
 
@@ -115,12 +107,11 @@ def mean_moduli(f: Compared) -> FigureData:
     """Show the mean modulus of the contacts, which the plasticity index goes as."""
     title, caption = "Plasticity index over that of the homogeneous surface", f.caption(len(f.listed))
     if f.swept:
-        just = tuple(
-            Series(f"d/σ = {h:g}", _MODULI[0], _MODULI[0] - (_MODULI[0] - 1) * np.exp(-h)) for h in _AT
-        )
+        gamma, _ = _MODULI
+        just = tuple(Series(f"d/σ = {h:g}", gamma, gamma - (gamma - 1) * np.exp(-h)) for h in _AT)
         panels = [Panel("a  as in the paper: just touching, s = d/σ", GAMMA, _PSI, just, level=1.0)]
-        for weight, words in _TITLES.items():
-            panels.append(ratio(f, words, r"\psi/\psi", Modulus(weight), *_MODULI, _AT))
+        for key, (weight, words) in zip("bcd", _WEIGHTS.items(), strict=True):
+            panels.append(ratio(f, f"{key}  {words}", r"\psi/\psi", Modulus(weight), _MODULI, _AT))
         return FigureData(title, caption, tuple(panels))
     weights, said = {"contacts": "number"}, "Mean over the contacts, each weighted alike (contacts)"
     if type(f.scene.law) is Hertz and f.scene.summits is None:  # else neither is a power of the overlap

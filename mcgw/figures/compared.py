@@ -28,6 +28,7 @@ from mcgw.statistics.comparison import Points
 
 Key = str | float  # label of a scene or, in a sweep, a gamma
 Estimate = tuple[Array, Array]  # means and their standard errors
+Gammas = tuple[Array, Array]  # of lines and of points
 _Result = TypeVar("_Result")
 
 SCENE = "this scene"
@@ -63,7 +64,7 @@ class Compared:
     def __init__(self, asked: Scene, swept: bool = False, most_listed: int = 100) -> None:
         self.swept, self.most_listed = swept, most_listed  # surfaces whose heights are listed one by one
         self.scene = _of_paper(asked) if swept else _pressed_once(asked)
-        self.all = _gradings(self.scene) if swept else _simpler(self.scene)  # by label
+        self.all = _graded(self.scene) if swept else _simpler(self.scene)  # by label
         labels = tuple(self.all)
         self.reference = "γ = 1" if swept else labels[-1]  # of ratios: the simplest
         self.others = tuple(label for label in labels if label != self.reference)
@@ -131,9 +132,8 @@ class Compared:
 
 
 def _of_paper(scene: Scene) -> Scene:
-    return scene.replace(
-        grading=Homogeneous(), separations=np.linspace(0, 4, 17), quantities=tuple(QUANTITIES)
-    )
+    h = np.linspace(0, 4, 17)
+    return scene.replace(grading=Homogeneous(), separations=h, quantities=tuple(QUANTITIES))
 
 
 def _pressed_once(scene: Scene) -> Scene:
@@ -146,9 +146,8 @@ def _pressed_once(scene: Scene) -> Scene:
     )  # fmt: skip
 
 
-def _gradings(scene: Scene) -> dict[str, Scene]:
-    graded = {f"γ = {g:g}": scene.replace(grading=Exponential(g)) for g in _GAMMAS}
-    return graded | {"γ = 1": scene}
+def _graded(scene: Scene) -> dict[str, Scene]:
+    return {f"γ = {g:g}": scene.replace(grading=Exponential(g)) if g != 1 else scene for g in _GAMMAS}
 
 
 def _simpler(scene: Scene) -> dict[str, Scene]:
@@ -221,11 +220,10 @@ class Modulus:
         modulus, power = f.of(key).modulus, POWERS[self.weight]
         above, below = np.zeros((2, len(f.listed), len(h)))
         for i, s in enumerate(f.listed):
-            for k, separation in enumerate(h):
-                touching = s[s > separation]
-                e = modulus(touching)
-                weights = (touching - separation) ** power * (e if self.weight == "load" else 1.0)
-                above[i, k], below[i, k] = np.sum(weights * e), np.sum(weights)
+            e, overlap = modulus(s), s - h[:, None]
+            weights = np.where(overlap > 0, np.abs(overlap) ** power, 0.0)
+            weights *= e if self.weight == "load" else 1.0
+            above[i], below[i] = weights @ e, weights.sum(axis=1)
         return _ratio([above], [below])
 
 
@@ -247,20 +245,17 @@ def over_separation(f: Compared, label: str, what: Measure, key: str = "", n_sur
     return Series(label, f.line, what.exact(f, key, f.line), points)
 
 
-def ratio(
-    f: Compared, title: str, symbol: str, what: Measure, line: Array, gammas: Array, at: Array
-) -> Panel:
+def ratio(f: Compared, title: str, symbol: str, what: Measure, gammas: Gammas, at: Array) -> Panel:
     """Draw a ratio to the reference: of a sweep over gamma, else over the separation for each other scene."""
     ylabel = rf"${symbol}_\mathrm{{{'hom' if f.swept else 'ref'}}}$"
     if not f.swept:
         series = tuple(over_separation(f, label, what) for label in f.others)
         return Panel(title, SEPARATION, ylabel, series, level=1.0)
-    mean, stderr = np.array([what.drawn(f, float(gamma), at) for gamma in gammas]).transpose(1, 2, 0)
-    curves, truth = (
-        np.array([what.exact(f, float(gamma), at) for gamma in some]).T for some in (line, gammas)
-    )
+    line, known = gammas
+    mean, stderr = np.array([what.drawn(f, float(g), at) for g in known]).transpose(1, 2, 0)
+    curves, truth = (np.array([what.exact(f, float(g), at) for g in each]).T for each in gammas)
     series = tuple(
-        Series(f"d/σ = {h:g}", line, curves[k], Points(gammas, mean[k], stderr[k], truth[k]))
-        for k, h in enumerate(at)
+        Series(f"d/σ = {h:g}", line, curve, Points(known, *each))
+        for h, curve, *each in zip(at, curves, mean, stderr, truth, strict=True)
     )
     return Panel(title, GAMMA, ylabel, series, level=1.0)

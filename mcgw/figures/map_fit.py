@@ -77,20 +77,17 @@ def _draw_moments(ready: Prepared, axis: Any) -> None:
     first = ready.asked.cutoff or 2 * max(ready.used.pixel)
     last = min(12.0 * first, min(ready.levelled.size) / 4)  # from the shortest cutoff to the longest
     cutoffs, rows = np.geomspace(first, max(last, 1.01 * first), 8), []
-    for cutoff in cutoffs:
-        try:
+    with suppress(ValueError):  # the filter leaves nothing of the map
+        for cutoff in cutoffs:
             m = moments_of(summit_sums_of(smooth(ready.levelled, float(cutoff)), across=1))
-        except ValueError:  # the filter leaves nothing of the map
-            break
-        rows.append((m.m0, m.m2, m.m4))
+            rows.append((m.m0, m.m2, m.m4))
     unit, prefix = prefixed(float(cutoffs[len(rows) // 2]))
     axis.set_yscale("log")
     for values, name in zip(np.array(rows).T, ("$m_0$", "$m_2$", "$m_4$"), strict=True):
-        axis.plot(
-            cutoffs[: len(rows)] / unit, values / values[0], **look(name), ms=4, mfc="white", label=name
-        )
-    axis.set(title="c  moments against cutoff", xlabel=f"cutoff ({prefix}m)")
-    axis.set_ylabel("over those at the first cutoff")
+        over = values / values[0]
+        axis.plot(cutoffs[: len(rows)] / unit, over, **look(name), ms=4, mfc="white", label=name)
+    label = "over those at the first cutoff"
+    axis.set(title="c  moments against cutoff", xlabel=f"cutoff ({prefix}m)", ylabel=label)
 
 
 def draw_heights(fit: Fit, axis: Any) -> None:

@@ -19,11 +19,8 @@ from mcgw.figures.style import BAND, LEVEL, PAPER, STYLE, look, save_figure
 from mcgw.formats.table import Column, Table
 from mcgw.statistics.comparison import Points
 
-Painter = Callable[[Any], None]
-
 GAMMA, SEPARATION, PRESSURE = "grading factor γ", "separation d/σ", "pressure $P/A_n$ (MPa)"
 PANELS: Any = STYLE | {"axes.titlelocation": "left"}
-_COLUMNS = ("panel", "series", "kind", "x", "theory", "mean", "stderr")
 _WIDTH, _NARROWEST = 3.7, 4.4  # inches, of a panel with its labels and of a figure
 _TALL, _RESIDUAL, _TEXTS = 3.2, 0.8, 0.6  # inches, of a panel, residuals under it, title and caption
 _KEY, _THEORY = "Monte Carlo, 95 %", "theory"
@@ -61,8 +58,10 @@ class Panel:
     series: tuple[Series, ...] = ()  # lines of theory and points
     scales: tuple[str, str] = ("linear", "linear")  # of x and y
     level: float | None = None  # a value of y worth a line of its own
-    paint: Painter = lambda _: None  # draws what else it shows, and sets other properties, on its axes
-    wide: bool = False  # whether it takes all columns
+    paint: Callable[[Any], None] = lambda _: (
+        None
+    )  # draws what else it shows, and sets other properties, on its axes
+    wide: bool = False  # whether it takes all columns, below all others
 
 
 @dataclass(frozen=True)
@@ -82,7 +81,8 @@ def figure_table(figure: FigureData) -> Table:
         rows += [(*about, "line", *at, "", "") for at in zip(series.x, series.theory, strict=True)]
         if p:
             rows += [(*about, "point", *at) for at in zip(p.x, p.theory, p.mean, p.stderr, strict=True)]
-    return Table(tuple(map(Column, _COLUMNS, zip(*rows, strict=True))))
+    names = ("panel", "series", "kind", "x", "theory", "mean", "stderr")
+    return Table(tuple(map(Column, names, zip(*rows, strict=True))))
 
 
 def draw(data: FigureData) -> Figure:
@@ -91,14 +91,11 @@ def draw(data: FigureData) -> Figure:
     Under a panel with Monte-Carlo points are their distances from theory in standard errors: five decades,
     or a scale of ten to one, hide what matters.
     """
-    narrow = sum(not panel.wide for panel in data.panels)
-    columns = 2 if narrow == 4 else min(narrow, 3)  # more are too small to read on a page
-    rows: list[list[Any]] = [[]]
-    for k, panel in enumerate(data.panels):
-        if len(rows[-1]) + (width := columns if panel.wide else 1) > columns:
-            rows.append([])
-        rows[-1] += [k] * width
-    rows = [[*row, *["."] * (columns - len(row))] for row in rows]
+    narrow: list[Any] = [k for k, panel in enumerate(data.panels) if not panel.wide]
+    columns = 2 if len(narrow) == 4 else min(len(narrow), 3)  # more are too small to read on a page
+    narrow += ["."] * (-len(narrow) % columns)
+    rows = [narrow[k : k + columns] for k in range(0, len(narrow), columns)]
+    rows += [[k] * columns for k, panel in enumerate(data.panels) if panel.wide]
     checked = {k for k, panel in enumerate(data.panels) if any(p.varies.any() for *_, p in _known(panel))}
     places = [line for row in rows for line in (row, [f"below {k}" if k in checked else k for k in row])]
     with mpl.rc_context(PANELS):
@@ -115,24 +112,18 @@ def draw(data: FigureData) -> Figure:
                 _draw_residuals(below, panel, labelled=any(row[0] == k for row in rows))
                 axes[k].set_xlabel("")
                 axes[k].tick_params(labelbottom=False)
-        _draw_legend(part, data.panels, size[0])
+        if len(named := keys(part.axes)) > 1:  # above all panels, where no data are
+            longest = _HANDLE + _LETTER * max(map(len, named))
+            part.legend(
+                named.values(), named.keys(), ncols=max(int(72 * size[0] / longest), 1), fontsize=_SMALL,
+                loc="outside upper left", handlelength=2.5, columnspacing=1,
+                handler_map={tuple: HandlerTuple(ndivide=None)},
+            )  # fmt: skip
         side: Any = {"x": 0.01, "ha": "left"}
         figure.suptitle(_wrapped(data.title, int(10 * size[0])), fontsize=11, fontweight="bold", **side)
         if data.caption:
             figure.supxlabel(_wrapped(data.caption, int(16 * size[0])), fontsize=_SMALL, color=PAPER, **side)
     return figure
-
-
-def _draw_legend(part: Any, panels: Sequence[Panel], width: float) -> None:
-    """Name lines and markers above all panels, where no data are."""
-    named = keys(part.axes, panels)
-    if len(named) > 1:
-        longest = _HANDLE + _LETTER * max(map(len, named))
-        columns = max(int(72 * width / longest), 1)
-        part.legend(
-            named.values(), named.keys(), ncols=columns, fontsize=_SMALL, loc="outside upper left",
-            handlelength=2.5, columnspacing=1, handler_map={tuple: HandlerTuple(ndivide=None)},
-        )  # fmt: skip
 
 
 def _wrapped(text: str, width: int) -> str:
@@ -155,21 +146,21 @@ def draw_panel(axis: Any, panel: Panel) -> None:
     for k, series in enumerate(panel.series):
         _draw_series(axis, series, k, logarithmic)
     if logarithmic:
-        means = np.concatenate([np.empty(0), *(points.mean for *_, points in _known(panel))])
+        means = np.concatenate([np.empty(0), *(p.mean for *_, p in _known(panel))])
         touches = np.any(means == 0) and np.any(means > 0)
         axis.set_ylim(bottom=_UNSEEN * means[means > 0].min() if touches else 0.6 * lines[lines > 0].min())
     axis.set_title(panel.title)
     panel.paint(axis)
 
 
-def keys(axes: Sequence[Any], panels: Sequence[Panel]) -> dict[str, Any]:
-    """Return the handles of a legend by label: each line as it is drawn, and the markers of points."""
-    found = {x.get_label(): x for axis in axes for x in axis.get_legend_handles_labels()[0]}
-    known = [each for panel in panels for each in _known(panel)]
-    marks = {_marks(s, k)["marker"]: _marks(s, k)["color"] for k, s, _ in known}
-    if marks:
+def keys(axes: Sequence[Any]) -> dict[str, Any]:
+    """Return the handles of a legend by label: each line as it is drawn, and last the markers of points."""
+    handles = [x for axis in axes for x in axis.get_legend_handles_labels()[0]]
+    found = {x.get_label(): x for x in handles}
+    marks = {x[0].get_marker(): x[0].get_color() for x in handles if x.get_label() == _KEY}
+    if found.pop(_KEY, None):
         found[_KEY] = tuple(Line2D([], [], ls="", marker=m, color=c, **_WHITE) for m, c in marks.items())
-    if any(np.any((points.mean != 0) & ~np.isfinite(points.interval[0])) for *_, points in known):
+    if found.pop(TOO_FEW, None):
         found[TOO_FEW] = Line2D([], [], ls="", marker="x", color=PAPER, **_WHITE)
     return found
 
@@ -197,10 +188,10 @@ def _draw_series(axis: Any, series: Series, k: int, logarithmic: bool) -> None:
     marks = {"color": found["color"], "zorder": 3, **_WHITE}
     some = shown & np.isfinite(low)
     columns = points.x[some], points.mean[some], [low[some], high[some]]
-    axis.errorbar(*columns, fmt=found["marker"], elinewidth=0.9, capsize=1.5, **marks)
+    axis.errorbar(*columns, fmt=found["marker"], elinewidth=0.9, capsize=1.5, label=_KEY, **marks)
     others = shown & ~some
     if others.any():
-        axis.plot(points.x[others], points.mean[others], "x", **marks)
+        axis.plot(points.x[others], points.mean[others], "x", label=TOO_FEW, **marks)
 
 
 def _draw_residuals(axis: Any, panel: Panel, *, labelled: bool) -> None:

@@ -1,7 +1,6 @@
 """What ``.plot()`` of each result draws: one pair of axes."""
 
-from dataclasses import replace
-from functools import partial, singledispatch
+from functools import singledispatch
 from typing import Any
 
 import matplotlib as mpl
@@ -30,47 +29,39 @@ _MOST_LINES = 7
 
 def draw(result: Any, ax: Any = None, **options: Any) -> Any:
     """Draw a result on axes, which are returned; by default new ones of pyplot, which a notebook shows."""
-    panel = panel_of(result, **options)
     with mpl.rc_context(PANELS):
         if ax is None:
             import matplotlib.pyplot as plt
 
             ax = plt.subplots(layout="constrained")[1]
-        draw_panel(ax, panel)
-        if named := keys([ax], [panel]):
+        draw_on(result, ax, **options)
+        if named := keys([ax]):
             ax.legend(named.values(), named.keys(), fontsize=8)
     return ax
 
 
 @singledispatch
-def panel_of(result: Any, **options: Any) -> Panel:
-    """Return the panel of a result."""
-    return Panel(paint=partial(draw_on, result, **options))
-
-
-@panel_of.register
-def _(result: Comparison, *, quantity: str | None = None) -> Panel:
-    quantity = quantity or next(iter(result.curves))
-    title = f"Monte Carlo and theory {result.verdict.word}: p = {result.verdict.p:.3g} over all means"
-    panel = quantity_panel(result, quantity)
-    return replace(panel, title=title, ylabel=result.ensemble.scene.quantity(quantity).title)
-
-
-@panel_of.register
-def _(result: Slopes, *, k: int = 0) -> Panel:
-    """At one separation, and at the first values of all other keys."""
-    value, error, theory = (
-        np.moveaxis(x, result.axis, 0)[..., k].reshape(len(result.at), -1)[:, 0]
-        for x in (result.value, result.stderr, result.theory)
-    )
-    series = Series("theory", result.at, theory, Points(result.at, value, error, theory))
-    return Panel("", result.key, f"change of the mean {result.quantity.replace('_', ' ')}", (series,))
-
-
-@singledispatch
 def draw_on(result: Any, _: Any) -> None:
-    """Draw a result that has no theory beside it."""
+    """Draw a result, with title and labels."""
     raise TypeError(f"{type(result).__name__}: there is no figure of it")
+
+
+@draw_on.register
+def _(result: Comparison, axis: Any, *, quantity: str | None = None) -> None:
+    quantity = quantity or next(iter(result.curves))
+    draw_panel(axis, quantity_panel(result, quantity))
+    title = f"Monte Carlo and theory {result.verdict.word}: p = {result.verdict.p:.3g} over all means"
+    axis.set(title=title, ylabel=result.ensemble.scene.quantity(quantity).title)
+
+
+@draw_on.register
+def _(result: Slopes, axis: Any, *, k: int = 0) -> None:
+    """At one separation, and at the first values of all other keys."""
+    every = (np.moveaxis(x, result.axis, 0)[..., k] for x in (result.value, result.stderr, result.theory))
+    value, error, theory = (x.reshape(len(result.at), -1)[:, 0] for x in every)
+    series = Series("theory", result.at, theory, Points(result.at, value, error, theory))
+    label = f"change of the mean {result.quantity.replace('_', ' ')}"
+    draw_panel(axis, Panel("", result.key, label, (series,)))
 
 
 @draw_on.register
@@ -89,9 +80,8 @@ def _(result: Ensemble, axis: Any, *, quantity: str | None = None) -> None:
         ends = exact_ends(result.scene, quantity, 0.9)
         least, most = (mean - std, mean + std) if ends is None else (x[order] for x in ends)
         words = "std over surfaces (no quick law)" if ends is None else "90 % of the surfaces"
-        axis.fill_between(
-            h, np.maximum(least, 50 * lowest), most, color=MONTE_CARLO, alpha=0.18, lw=0, label=words
-        )
+        band: Any = {"color": MONTE_CARLO, "alpha": 0.18, "lw": 0, "label": words}
+        axis.fill_between(h, np.maximum(least, 50 * lowest), most, **band)
     arms = np.nan_to_num([mean - np.maximum(low, lowest), high - mean])
     axis.errorbar(h, mean, arms, **SEEN, fmt="o-", label="mean, 95 %")
 

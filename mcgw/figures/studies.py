@@ -2,6 +2,7 @@
 
 import textwrap
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
@@ -89,18 +90,17 @@ def spread(
         with np.errstate(divide="ignore", invalid="ignore"):  # nan where nothing touches
             return np.asarray(np.sqrt(law.variance) / np.abs(law.mean))
 
-    exact = over_mean(scene.theory.cumulants(name, line))
+    whole = Series(label, line, over_mean(scene.theory.cumulants(name, line)))
     if drawn is None:
-        return Series(label, line, exact)
-    h = drawn.separations
-    known = (scene.theory.mean("contacts", h) * drawn.n_surfaces >= fewest) & (drawn.std(name) > 0)
+        return whole
+    contacts = scene.theory.mean("contacts", drawn.separations) * drawn.n_surfaces
+    known = (contacts >= fewest) & (drawn.std(name) > 0)
     if not known.any():
-        return Series(label, line, exact)
-    law = scene.theory.cumulants(name, h[known])
-    there = over_mean(law)
-    relative = np.sqrt((law.excess_kurtosis + 2) / 4 + there**2 - law.skewness * there)
-    seen = drawn.std(name)[known] / np.abs(drawn.mean(name)[known])
-    return Series(label, line, exact, Points(h[known], seen, there * relative / drawn.n_surfaces**0.5, there))
+        return whole
+    h, law = drawn.separations[known], scene.theory.cumulants(name, drawn.separations[known])
+    exact, seen = over_mean(law), drawn.std(name)[known] / np.abs(drawn.mean(name)[known])
+    relative = np.sqrt((law.excess_kurtosis + 2) / 4 + exact**2 - law.skewness * exact)
+    return replace(whole, points=Points(h, seen, exact * relative / drawn.n_surfaces**0.5, exact))
 
 
 def draw_residuals(z: Array, axis: Any) -> None:
@@ -135,11 +135,8 @@ def convergence_figure(found: "Convergence") -> FigureData:
     parts |= {curve.against: partial(_draw_slope, curve) for curve in found.slopes}
     few = partial(words, "z-scores: too few contacts")
     scores = Panel("z-scores", paint=partial(draw_residuals, found.scores))
-    title = (
-        f"{shown_title(found.scene, 'Scene')}\n"
-        f"Statistical convergence {found.word}: p = {found.p:.3g} over "
-        f"{len(found.checks)} checks (false alarms: 1 in {1 / FALSE_ALARM:.0f})"
-    )
+    said = f"Statistical convergence {found.word}: p = {found.p:.3g} over {len(found.checks)} checks"
+    title = f"{shown_title(found.scene, 'Scene')}\n{said} (false alarms: 1 in {1 / FALSE_ALARM:.0f})"
     checks = Panel(paint=partial(draw_checks, found), wide=True)
     slopes = (Panel(paint=paint) for paint in parts.values())
     return FigureData(title, "", (*slopes, scores if found.scores.size else Panel(paint=few), checks))

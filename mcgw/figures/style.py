@@ -107,19 +107,10 @@ def prefixed(largest: float) -> tuple[float, str]:
 
 
 def look(label: str, place: int = 0) -> dict[str, Any]:
-    """Colour, dash and marker of what a label names.
+    """Colour, dash and marker of what a label names, as options of ``plot``.
 
-    Parameters
-    ----------
-    label : str
-        A name of `MEANINGS`, of a quantity on unloading, "γ = 0.5", "d/σ = 2" or "N = 10³".
-    place : int, optional
-        Which line of its panel it is: tells those of other labels apart.
-
-    Returns
-    -------
-    dict
-        With keys "color", "linestyle", "marker".
+    Labels are names of `MEANINGS`, of a quantity on unloading, "γ = 0.5", "d/σ = 2" and "N = 10³"; others are
+    told apart by which line of its panel each is.
     """
     if label in MEANINGS:
         return MEANINGS[label]
@@ -205,15 +196,7 @@ _UNDATED: dict[str, dict[str, Any]] = {"pdf": {"CreationDate": None}, "svg": {"D
 
 
 def save_figure(figure: Figure, path: str | Path, **options: Any) -> None:
-    """Write a figure whole or not at all, in the format of the ending; options are those of ``savefig``.
-
-    Raises
-    ------
-    ValueError
-        If matplotlib does not write this format.
-    OSError
-        If the file cannot be written.
-    """
+    """Write a figure whole or not at all, in the format of the ending; options are those of ``savefig``."""
     ending = Path(path).suffix[1:].lower()
     with whole_file(Path(path)) as unfinished, mpl.rc_context({"svg.hashsalt": "mcgw"}):
         figure.savefig(unfinished, format=ending, metadata=_UNDATED.get(ending), **options)

@@ -65,9 +65,9 @@ def watched() -> Iterator[None]:
         _WATCHED.reset(before)
 
 
-def steps(items: Sequence[_Item], unit: str) -> Iterator[_Item]:
-    """Iterate over long work; with a bar on a watched terminal."""
-    with told(None, unit) as tell:
+def steps(items: Sequence[_Item], unit: str, progress: Progress = None) -> Iterator[_Item]:
+    """Iterate over long work; by default with a bar on a watched terminal."""
+    with told(progress, unit) as tell:
         for number, item in enumerate(items):
             tell(number, len(items))
             yield item

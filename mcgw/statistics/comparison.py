@@ -11,7 +11,7 @@ from mcgw.ensemble.ensemble import Ensemble, how_many, shown
 from mcgw.ensemble.intervals import interval_columns
 from mcgw.ensemble.results import heading
 from mcgw.formats.table import SEPARATION, Column, Drawn, Table, joined, stacked
-from mcgw.machine.progress import Progress, told
+from mcgw.machine.progress import Progress, steps
 from mcgw.scene.kinds import check_object
 from mcgw.statistics.verdict import Check, Tested, laws_of_values, tested, together, verdict
 from mcgw.sweeps.axes import label
@@ -76,15 +76,12 @@ class Comparison(Drawn):
 
     def sheet(self) -> Table:
         """Return the verdict, and each quantity at the separation where it is farthest from theory."""
-        farthest = {}
+        farthest, v = {}, self.verdict
         for name, table in self.tables().items():  # of those that read alike the first, despite rounding
             farthest[name] = table.at([int(np.abs(self.curves[name].residual).round(2).argmax())])
-        v = self.verdict
-        facts = [
-            ("all means", f"{v.seen}, p = {v.p:.3g}"),
-            ("elasticity", self.ensemble.scene.validity().brief),
-            *([("shown", self.of_many)] if self.of_many else []),
-        ]
+        within = self.ensemble.scene.validity().brief
+        facts = [("all means", f"{v.seen}, p = {v.p:.3g}"), ("elasticity", within)]
+        facts += [("shown", self.of_many)] if self.of_many else []
         table = stacked(farthest, "quantity", "farthest off")
         return table.under(f"Monte Carlo and theory {v.word}", facts)
 
@@ -142,14 +139,10 @@ class SweepComparison(Drawn):
 
     def sheet(self, most: int = 7) -> Table:
         """Return the verdict, and the points that are farthest from theory."""
-        v, n = self.verdict, len(self.points)
-        smallest = self.worst[0].verdict.p
-        beyond = int((np.abs(self.residuals) > 3).sum())
-        facts = [
-            ("all points", f"p = {v.p:.3g}: {n} times the smallest p of a point, {smallest:.3g}"),
-            ("residuals", f"{beyond} of {len(self.residuals)} beyond 3 standard errors"),
-        ]
-        shown = self.worst[:most]
+        v, n, z, shown = self.verdict, len(self.points), np.abs(self.residuals), self.worst[:most]
+        every = f"p = {v.p:.3g}: {n} times the smallest p of a point, {shown[0].verdict.p:.3g}"
+        beyond = f"{(z > 3).sum()} of {len(z)} beyond 3 standard errors"
+        facts = [("all points", every), ("residuals", beyond)]
         at = [self.sweep.axes.values_text(one.number) for one in shown]
         rows = joined([one.table(self.sweep.scenes[0]).at([one.row]) for one in shown])
         columns = Column("point", at, ", ".join(self.sweep.axes.keys)), *rows.columns
@@ -210,12 +203,8 @@ def compare(
         if isinstance(result, Sweep):
             if laws:
                 raise ValueError("laws = True: a sweep keeps no single values; compare one of its scenes")
-            points = []
-            with told(progress, "points") as tell:
-                for i, point in enumerate(np.ndindex(result.shape)):
-                    tell(i, result.axes.size)
-                    points.append(replace(tested(result.ensemble(point), _SEPARATIONS), number=i))
-                tell(result.axes.size, result.axes.size)
+            numbered = steps([*enumerate(np.ndindex(result.shape))], "points", progress)
+            points = (replace(tested(result.ensemble(at), _SEPARATIONS), number=k) for k, at in numbered)
             return SweepComparison(result, tuple(points))
     check_object("compare", result, Ensemble)
     some, found, curves = shown(result), verdict(result), {}

@@ -14,7 +14,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Results, joined
 from mcgw.ensemble.simulation import simulate
 from mcgw.formats.table import Column, Drawn, Table, evenly
-from mcgw.machine.progress import Progress, told
+from mcgw.machine.progress import Progress, steps
 from mcgw.machine.terminal import brief
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene
@@ -127,12 +127,8 @@ def converge(
         separations=h[evenly(len(h), 12)], n_surfaces=min(max(scene.n_surfaces, 64), 1000),
         interaction=None, rel_err=None, max_seconds=None, keep="sums",
     )  # fmt: skip
-    parts = []
-    with told(progress, "ensembles") as tell:
-        for k in range(seeds):
-            tell(k, seeds)
-            parts.append(draw(scene.replace(seed=(scene.seed + k) % 2**64)))
-        tell(seeds, seeds)
+    numbers = steps(range(seeds), "ensembles", progress)
+    parts = [draw(scene.replace(seed=(scene.seed + k) % 2**64)) for k in numbers]
     sums = joined([{name: part[name] for name in scene.quantities} for part in parts])
     exact = PrincipalComponents.of(scene)
     y = exact.turn(sums)

@@ -95,14 +95,11 @@ class Tradeoff(Drawn):
         """What to do for the mean and the quantile, in one sentence."""
         parts = []
         for want in ("mean", "quantile"):
-            found = self.advice(want, 1e-3)
-            if found.way is None:
-                parts.append(f"the {self.words(want)} is out of reach")
-            elif found.way.draws:
-                n = f"{found.n_surfaces} surfaces by {found.way.name}, {in_words(found.seconds)}"
-                parts.append(f"the {self.words(want)} to 0.1 % takes {n}")
-            else:
-                parts.append(f"the {self.words(want)} needs no surfaces: {in_words(found.seconds)}")
+            found, said = self.advice(want, 1e-3), "is out of reach"
+            if found.way:
+                drawn = f"to 0.1 % takes {found.n_surfaces} surfaces by {found.way.name}, "
+                said = (drawn if found.way.draws else "needs no surfaces: ") + in_words(found.seconds)
+            parts.append(f"the {self.words(want)} {said}")
         text = "; ".join(parts)
         return f"{text[0].upper()}{text[1:]}."
 
@@ -125,12 +122,11 @@ class Tradeoff(Drawn):
             exact = x.want == "values" and x.way and x.way.floor <= _EXACT
             span = f"{x.target:g}" if x.target == last else f"{x.target:g} ... {last:g}"
             errors.append("exact" if exact else span)
-        drawn = [x.way is not None and x.way.draws for x in first]
         columns = (
             Column("want", [self.words(x.want) for x in first]),
             Column("error_95", errors, "95 %"),
             Column("way", [x.way.name if x.way else "none" for x in first], "cheapest"),
-            Column("n_surfaces", [f"{x.n_surfaces:d}" * some for x, some in zip(first, drawn, strict=True)]),
+            Column("n_surfaces", [str(x.n_surfaces or "") for x in first]),
             Column("cpu_s", [x.seconds for x in first], "CPU (s)", form=".2g", missing=""),
             Column("type", [x.code(self.scene, self.load) for x in first]),
         )

@@ -172,29 +172,20 @@ def laws_of_values(ensemble: Ensemble) -> Check:
     found = distances(ensemble)
     distance, name, h = max(found)
     p = 2 * len(found) * float(np.exp(-2 * ensemble.n_surfaces * distance**2))
-    where = f"the distribution of {name} at d/sigma = {h:g}"
-    seen = f"{where} differs by {distance:.3g}, the most of {len(found)}"
+    most = f"differs by {distance:.3g}, the most of {len(found)}"
+    seen = f"the distribution of {name} at d/sigma = {h:g} {most}"
     return Check("distributions of values", seen, min(p, 1.0))
 
 
 def distances(ensemble: Ensemble) -> list[tuple[float, str, float]]:
     """Largest difference of the share of the surfaces up to a value and its probability, and of what law.
 
-    Of each quantity at eight separations at most.
-
-    Raises
-    ------
-    ValueError
-        Where values are not kept, are those of listed summits (laws with a step for each of them) or of
-        radii of their own under a law that yields, or come from a sampler that spends some of the law.
+    Of each quantity at eight separations at most. Laws of listed summits have a step for each of them.
     """
     scene, one_radius = ensemble.scene, ensemble.scene.summits is None
-    if (
-        scene.keep == "statistics"
-        or isinstance(scene.heights, MeasuredHeights)
-        or not promise_of(ensemble.sampler).one_by_one
-        or not (scene.hertzian or one_radius)
-    ):
+    kept = scene.keep != "statistics" and promise_of(ensemble.sampler).one_by_one
+    known = not isinstance(scene.heights, MeasuredHeights) and (scene.hertzian or one_radius)
+    if not (kept and known):
         raise ValueError(
             "laws = True: needs kept values of surfaces, from an exact sampler; not "
             "for listed summits, nor for individual radii with a law other than Hertz's"

@@ -90,7 +90,8 @@ def of_one(scene: Scene, want: str) -> float:
     if want == "std":  # by the fourth moment of the sum over asperities, about 0 or about the mean
         return _BOUND * sqrt(max(2 + float(scene.theory.cumulants(q, h).excess_kurtosis), 0.0) / 4)
     law = scene.theory.distribution(q, h)  # of a quantile by the density there (order statistics)
-    density = (value := float(law.ppf(PROBABILITY))) * float(law.pdf(value))
+    value = float(law.ppf(PROBABILITY))
+    density = value * float(law.pdf(value))
     return _BOUND * sqrt(PROBABILITY * (1 - PROBABILITY)) / density if density > 0 else inf
 
 
