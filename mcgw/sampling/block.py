@@ -14,16 +14,10 @@ from mcgw.scene.scene import Scene
 
 @dataclass(frozen=True)
 class Layout:
-    """Which moments a surface keeps.
+    """Which moments a surface keeps."""
 
-    Parameters
-    ----------
-    plain, rooted : ndarray of int
-        How many T_j and R_j each cell has.
-    """
-
-    plain: NDArray[np.int64]
-    rooted: NDArray[np.int64]
+    plain: NDArray[np.int64]  # how many T_j each cell has
+    rooted: NDArray[np.int64]  # how many R_j
 
     @property
     def sizes(self) -> NDArray[np.int64]:
@@ -80,21 +74,11 @@ class Source(Protocol[Drawn]):
 
 @dataclass(frozen=True)
 class Sampler:
-    """Draws the surfaces of a scene: in cells, and one by one beside them, unless a sampler says otherwise.
+    """Draws surfaces of a scene: in cells, and one by one beside them, unless a sampler says otherwise."""
 
-    Parameters
-    ----------
-    name : str
-        One of `mcgw.scene.ensemble.SAMPLERS`, never "auto".
-    scene : Scene
-        What to simulate.
-    mesh : Mesh
-        Its cells; with none, every asperity is drawn by itself.
-    """
-
-    name: str
-    scene: Scene
-    mesh: Mesh
+    name: str  # one of `mcgw.scene.ensemble.SAMPLERS`, never "auto"
+    scene: Scene  # what to simulate
+    mesh: Mesh  # its cells; with none, every asperity is drawn by itself
 
     @property
     def distance(self) -> float:

@@ -49,25 +49,13 @@ _ONE = np.ones(1)
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Cells of a scene.
+    """Cells of a scene."""
 
-    Parameters
-    ----------
-    edges : ndarray
-        Reduced heights, increasing, shape (cells + 1,); empty if there is no cell.
-    probability : ndarray
-        Of a height in each cell, shape (cells,).
-    stretch : ndarray
-        Chebyshev coefficients of t(u)/u for each cell, shape (order, cells).
-    low_extras, high_extras : float
-        Probability of a contacting height below the first and above the last cell.
-    """
-
-    edges: Array
-    probability: Array
-    stretch: Array
-    low_extras: float
-    high_extras: float
+    edges: Array  # reduced heights, increasing, shape (cells + 1,); empty if there is no cell
+    probability: Array  # of a height in each cell, shape (cells,)
+    stretch: Array  # Chebyshev coefficients of t(u)/u for each cell, shape (order, cells)
+    low_extras: float  # probability of a contacting height below the first cell
+    high_extras: float  # and above the last
 
     @property
     def range(self) -> tuple[float, float]:
@@ -85,21 +73,10 @@ class Mesh:
 
 
 def mesh_of(scene: Scene, given: Sequence[float] = (), *, split: bool = True) -> Mesh:
-    """Cut the contacting heights of a scene into cells.
+    """Cut the contacting heights of a scene into cells: every separation and break of the grading is an edge.
 
-    Parameters
-    ----------
-    scene : Scene
-        Its separations, grading, height law and number of asperities are used.
-    given : sequence of float, optional
-        Edges of the cells of other scenes, which are to be edges here too: then no cell is cut further.
-    split : bool, optional
-        Cut crowded cells further, so that each needs fewer moments.
-
-    Returns
-    -------
-    Mesh
-        With every separation and every break of the grading on an edge.
+    Edges `given` are those of the cells of other scenes, which are to be edges here too: then no cell is cut
+    further. `split` cuts crowded cells further, so that each needs fewer moments.
     """
     edges = edges_before_grading(scene, given, split=split)
     if not edges.size:

@@ -32,23 +32,11 @@ _MANY, _BYTES = 10**7, 100  # heights that are worth asking whether there is roo
 
 @dataclass(frozen=True)
 class Counted(Sampler):
-    """A sampler put together of a mesh, a response, a way to count and a way to draw.
+    """A sampler put together of a mesh, a response, a way to count and a way to draw."""
 
-    Parameters
-    ----------
-    name, scene, mesh
-        As of any `Sampler`.
-    response : Response or Families
-        Physics on this mesh.
-    drawing : OneByOne, optional
-        How the moments of the cells are drawn.
-    table : RadiusTable, optional
-        Of radii, where summits have their own.
-    """
-
-    response: "Response | Families"
-    drawing: OneByOne = OneByOne()  # noqa: RUF009 - it has no state
-    table: "RadiusTable | None" = None
+    response: "Response | Families"  # physics on this mesh
+    drawing: OneByOne = OneByOne()  # of the moments of cells  # noqa: RUF009 - it has no state
+    table: "RadiusTable | None" = None  # of radii, where summits have their own
 
     @property
     def moments(self) -> int:
@@ -77,21 +65,10 @@ class Counted(Sampler):
         return moments, counts.cells.astype(np.float64), extras
 
     def sums(self, first: int, moments: Array, counts: Array, extras: Array) -> Sums:
-        """Quantities of surfaces `first` ... from what was drawn.
+        """Return quantities of surfaces `first` ... from what was drawn, SI, shape (surfaces, separations).
 
-        Parameters
-        ----------
-        first : int
-            Number of the first surface.
-        moments, counts : ndarray
-            Shape (moments, surfaces) and (cells, surfaces).
-        extras : ndarray
-            Rows (surface, height, weight), and the ratio of the radius where summits have their own.
-
-        Returns
-        -------
-        dict of str to ndarray
-            Each quantity in SI units, shape (surfaces, separations).
+        Moments have shape (moments, surfaces), counts (cells, surfaces); extras are rows (surface, height,
+        weight), and the ratio of the radius where summits have their own.
         """
         scene = self.scene
         once = np.array(scene.all_separations)
@@ -145,26 +122,10 @@ class Counted(Sampler):
 def extra_heights(
     scene: Scene, mesh: Mesh, first: int, counts: Counts, table: "RadiusTable | None" = None
 ) -> Array:
-    """Contacting heights outside the cells, for a block of surfaces.
+    """Return contacting heights outside the cells, for a block of surfaces that begins with number `first`.
 
-    Parameters
-    ----------
-    scene : Scene
-        Its height law, seed and lowest separation are used.
-    mesh : Mesh
-        The scene's.
-    first : int
-        Number of the block's first surface.
-    counts : Counts
-        How many lie below and above the cells.
-    table : RadiusTable, optional
-        Of radii, where summits have their own.
-
-    Returns
-    -------
-    ndarray
-        Rows (number of the surface, reduced height, weight), surface by surface, low ones first; and in a
-        fourth column the radius over that of the surface, where summits have their own.
+    Rows (number of the surface, reduced height, weight), surface by surface, low ones first; and in a fourth
+    column the radius over that of the surface, where summits have their own, out of the `table`.
     """
     law = scene.heights
     number = int(counts.high_extras.sum() + counts.low_extras.sum())

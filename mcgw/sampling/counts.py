@@ -18,37 +18,17 @@ _RARE = 1e-8  # below, binomial and Poisson differ less than 1 - p is rounded
 
 @dataclass(frozen=True)
 class Counts:
-    """Numbers of asperities of a block of surfaces.
+    """Numbers of asperities of a block of surfaces."""
 
-    Parameters
-    ----------
-    cells : ndarray of int
-        In each cell, shape (cells, surfaces).
-    low_extras, high_extras : ndarray of int
-        In contact, below and above all cells, shape (surfaces,).
-    """
-
-    cells: Ints
-    low_extras: Ints
-    high_extras: Ints
+    cells: Ints  # in each cell, shape (cells, surfaces)
+    low_extras: Ints  # in contact, below all cells, shape (surfaces,)
+    high_extras: Ints  # and above them
 
 
 def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
-    """Draw the numbers of surfaces `first` ... `first + n - 1`.
+    """Draw how many asperities of each cell the surfaces `first` ... `first + n - 1` have.
 
-    Parameters
-    ----------
-    scene : Scene
-        Its seed, number of asperities and law of that number are used.
-    mesh : Mesh
-        The scene's.
-    first, n : int
-        Which surfaces.
-
-    Returns
-    -------
-    Counts
-        A pure function of the seed and the number of the surface.
+    A pure function of the seed of the scene and the number of the surface.
     """
     probability = np.concatenate([[mesh.low_extras], mesh.probability, [mesh.high_extras]])
     n_asperities, touching = scene.n_asperities, float(probability.sum())
@@ -73,20 +53,7 @@ def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
 
 
 def contacts_above(counts: Array, cells: Ints) -> Array:
-    """Return the number of asperities in some cells and all those above.
-
-    Parameters
-    ----------
-    counts : ndarray
-        In each cell, shape (cells, surfaces).
-    cells : ndarray of int
-        Lowest ones.
-
-    Returns
-    -------
-    ndarray
-        Shape (surfaces, lowest ones).
-    """
+    """Add up numbers in cells (cells, surfaces) from some lowest ones on: (surfaces, lowest ones)."""
     above = np.zeros((len(counts) + 1, counts.shape[1]))
     np.cumsum(counts[::-1], axis=0, out=above[-2::-1])
     return np.ascontiguousarray(above[cells].T)

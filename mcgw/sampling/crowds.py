@@ -54,20 +54,11 @@ _U, _W = gauss_legendre(24)
 
 @dataclass(frozen=True)
 class Crowds(OneByOne):
-    """Crowded cells by the Gaussian limit of their moments (`mcgw.sampling.crowds`).
+    """Crowded cells by the Gaussian limit of their moments (`mcgw.sampling.crowds`)."""
 
-    Parameters
-    ----------
-    varying : Layout
-        Moments that vary; the others stay at their means.
-    threshold : int
-        Asperities in a cell, from which its moments count as Gaussian.
-    distance : float, optional
-        What is known of the distance from the exact laws: largest difference of distribution functions.
-    """
-
-    varying: Layout
-    threshold: int
+    varying: Layout  # moments that vary; the others stay at their means
+    threshold: int  # asperities in a cell, from which its moments count as Gaussian
+    # what is known of the distance from the exact laws: largest difference of distribution functions
     distance: float = np.nan
 
     def moments(self, seed: int, first: int, counts: Ints, layout: Layout) -> Array:
@@ -177,37 +168,17 @@ def _mix(moments: Any, counts: Any, rows: Any, starts: Any, means: Any, roots: A
 
 @dataclass(frozen=True)
 class Crowding:
-    """A threshold, and what it costs.
+    """A threshold, and what it costs."""
 
-    Parameters
-    ----------
-    threshold : int
-        Asperities in a cell, from which its moments count as Gaussian.
-    distance : float
-        From the exact law of any value: largest difference of distribution functions.
-    alone : float
-        Asperities of a surface that are expected in cells with fewer.
-    """
-
-    threshold: int
-    distance: float
-    alone: float
+    threshold: int  # asperities in a cell, from which its moments count as Gaussian
+    distance: float  # from the exact law of any value: largest difference of distribution functions
+    alone: float  # asperities of a surface that are expected in cells with fewer
 
 
 def crowding(scene: Scene, mesh: Mesh) -> Crowding | None:
     """Return the smallest crowd that keeps the laws of all values to `scene.accuracy`.
 
-    Parameters
-    ----------
-    scene : Scene
-        What to simulate.
-    mesh : Mesh
-        Its cells.
-
-    Returns
-    -------
-    Crowding or None
-        None if no crowd is large enough, or there is no cell.
+    None if no crowd is large enough, or there is no cell.
     """
     if not mesh.size:
         return None

@@ -26,25 +26,13 @@ _RADIUS, _DRAWS_WITH_RADIUS = 10, 6  # times an asperity with the radius of all
 
 @dataclass(frozen=True)
 class Expected:
-    """What a surface takes.
+    """What a surface takes."""
 
-    Parameters
-    ----------
-    name : str
-        Of the sampler.
-    cells, moments : int
-        About how many; 0 for samplers without cells.
-    draws : float
-        Numbers drawn.
-    seconds : float
-        Of one thread, within a factor of two or so.
-    """
-
-    name: str
-    cells: int
-    moments: int
-    draws: float
-    seconds: float
+    name: str  # of the sampler
+    cells: int  # about how many; 0 for samplers without cells
+    moments: int  # alike
+    draws: float  # numbers drawn
+    seconds: float  # of one thread, within a factor of two or so
 
 
 def expected(scene: Scene) -> Expected:

@@ -114,23 +114,10 @@ class OneByOne:
     distance = 0.0  # of the laws of values from the exact ones; nan if nobody knows
 
     def moments(self, seed: int, first: int, counts: Ints, layout: Layout) -> Array:
-        """Return the sums over the uniforms of each cell of a block of surfaces.
+        """Draw sums over the uniforms of each cell: shape (moments, surfaces).
 
-        Parameters
-        ----------
-        seed : int
-            The key.
-        first : int
-            Number of the block's first surface.
-        counts : ndarray of int
-            Asperities to draw in each cell, shape (cells, surfaces).
-        layout : Layout
-            Moments of each cell.
-
-        Returns
-        -------
-        ndarray
-            Shape (moments, surfaces): the same bits for any number of threads and in any block.
+        Of surfaces from number `first` on, with `counts` asperities in each cell, shape (cells, surfaces).
+        The same bits for any number of threads and in any block.
         """
         orders = np.column_stack([layout.plain, layout.rooted])
         sum_run = partial(_sum_cells, np.uint64(seed), first, layout.starts, orders)

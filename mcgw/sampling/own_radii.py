@@ -40,21 +40,12 @@ _X, _W = gauss_legendre(6)
 
 @dataclass(frozen=True, eq=False)
 class RadiusTable:
-    """The table.
+    """The table of sqrt(c) by the height and the share of summits with a smaller curvature."""
 
-    Parameters
-    ----------
-    bottom : float
-        Reduced height at which it begins.
-    largest : float
-        No sqrt(c) is larger.
-    coefficients : ndarray
-        Of powers of the height, then of the share: shape (panels, 2 pieces, 5, 6); pieces of shares from
-        below, then of those from above.
-    """
-
-    bottom: float
-    largest: float
+    bottom: float  # reduced height at which it begins
+    largest: float  # no sqrt(c) is larger
+    # of powers of the height, then of the share, whose pieces from below stand before those from above:
+    # shape (panels, 2 pieces, 5, 6)
     coefficients: Array
 
     def root_ratios(self, s: Array, centred: Array, fine: Array) -> Array:
@@ -189,24 +180,12 @@ def _root_ratios(coefficients: Any, bottom: Any, largest: Any, s: Any, centred: 
 
 @dataclass(frozen=True)
 class Families:
-    """Responses side by side.
+    """Responses side by side."""
 
-    Parameters
-    ----------
-    powers : tuple of float
-        Of the radius, one a family: only those that are asked for.
-    responses : tuple of Response
-        One a family.
-    places : tuple of int
-        Where each of their quantities, family by family, stands among all.
-    drawn : tuple of Layout, optional
-        Moments of each family, where there are more than it needs.
-    """
-
-    powers: tuple[float, ...]
-    responses: tuple[Response, ...]
-    places: tuple[int, ...]
-    drawn: tuple[Layout, ...] = ()
+    powers: tuple[float, ...]  # of the radius, one a family: only those that are asked for
+    responses: tuple[Response, ...]  # one a family
+    places: tuple[int, ...]  # where each of their quantities, family by family, stands among all
+    drawn: tuple[Layout, ...] = ()  # moments of each family, where there are more than it needs
 
     @classmethod
     def of(

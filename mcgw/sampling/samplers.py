@@ -117,21 +117,10 @@ def _counted(name: str, scene: Scene, mesh: Mesh) -> Counted:
 
 
 def aggregate_of(scene: Scene, crowded: int | None = None, distance: float = np.nan) -> Counted:
-    """Prepare ``aggregate``, perhaps with another threshold.
+    """Return ``aggregate``: only the moments that the laws of its sums need vary.
 
-    Parameters
-    ----------
-    scene : Scene
-        What to simulate.
-    crowded : int, optional
-        Asperities in a cell, from which its moments count as Gaussian. Default: 256.
-    distance : float, optional
-        What is known of its distance from the exact laws.
-
-    Returns
-    -------
-    Counted
-        Only the moments that the laws of its sums need vary.
+    Moments of a cell count as Gaussian from `crowded` asperities on, 256 by default; `distance` is what is
+    known of its distance from the exact laws.
     """
     from mcgw.sampling.crowds import CROWDED, VARYING, Crowds  # as above
 

@@ -24,15 +24,9 @@ from mcgw.scene.scene import Scene
 
 @dataclass(frozen=True)
 class Shared:
-    """Scenes of the same surfaces on the same cells.
+    """Scenes of the same surfaces on the same cells."""
 
-    Parameters
-    ----------
-    scenes : tuple of Sampler
-        Each alone: a `Counted` one, but where there is no other.
-    """
-
-    scenes: tuple[Sampler, ...]
+    scenes: tuple[Sampler, ...]  # each alone: a `Counted` one, but where there is no other
 
     @property
     def _counted(self) -> tuple[Counted, ...]:

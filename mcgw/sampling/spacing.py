@@ -67,22 +67,12 @@ def refined(law: HeightLaw, begins: Array, marks: Array) -> Array:
 
 @dataclass(frozen=True)
 class Gaps:
-    """Heights from separations, or from breaks of the contact law, to the next ones: one an array element.
+    """Heights from separations, or from breaks of the contact law, to the next ones: one an array element."""
 
-    Parameters
-    ----------
-    low, high : ndarray
-        Their ends.
-    before : ndarray
-        Distance from `low` to the separation below, infinite if there is none.
-    root : ndarray of bool
-        Whether contacts begin at `low`.
-    """
-
-    low: Array
-    high: Array
-    before: Array
-    root: NDArray[np.bool_]
+    low: Array  # where each begins
+    high: Array  # and ends
+    before: Array  # distance from `low` to the separation below, infinite if there is none
+    root: NDArray[np.bool_]  # whether contacts begin at `low`
 
     @property
     def fewest(self) -> Ints:
@@ -112,21 +102,9 @@ class _Cells:
 
 
 def cuts(law: HeightLaw, n: int, gaps: Gaps) -> Array:
-    """Cut gaps into cells.
+    """Return where to cut the gaps, for surfaces of `n` asperities; none asks for the fewest cells.
 
-    Parameters
-    ----------
-    law : HeightLaw
-        Of the heights.
-    n : int
-        Asperities of a surface; none asks for the fewest cells.
-    gaps : Gaps
-        What to cut.
-
-    Returns
-    -------
-    ndarray
-        Where, inside the gaps. No cell is wider than its distance to the nearest separation below.
+    No cell is wider than its distance to the nearest separation below.
     """
     found, fewest = [np.empty(0)], gaps.fewest
     for number in np.unique(fewest).tolist():
@@ -196,19 +174,9 @@ def _orders(law: HeightLaw, n: int, cells: _Cells, root: NDArray[np.bool_] | np.
 
 
 def expected_orders(law: HeightLaw, n: int, begins: Array, edges: Array) -> tuple[Ints, Ints]:
-    """About how many T_j and R_j each cell will need: what is known before any law is resolved on it.
+    """Return about how many T_j and R_j each cell will need, before any law is resolved on it.
 
-    Parameters
-    ----------
-    law, n
-        As of `cuts`.
-    begins, edges : ndarray
-        Where contacts begin, and where cells do; increasing.
-
-    Returns
-    -------
-    (ndarray, ndarray)
-        One number a cell.
+    Contacts begin at `begins`, cells at `edges`, which increase.
     """
     low, above = edges[:-1], law.sf(edges)
     k = np.searchsorted(begins, low)

@@ -18,30 +18,17 @@ _ANALYTIC = 4.0  # how far a formula is analytic, in widths of the cell at which
 
 @dataclass(frozen=True)
 class Stretches:
-    """Stretches of the separations of a scene, each separation once, in increasing order.
+    """Stretches of the separations of a scene, each separation once, in increasing order."""
 
-    Parameters
-    ----------
-    separation : ndarray of int
-        Which of the separations.
-    low, high : ndarray
-        Reduced heights; infinite where the stretch goes on beyond the range.
-    piece : ndarray of int
-        Which formula.
-    begins : ndarray of bool
-        Whether contact begins at `low` from nothing, rather than with a jump or from another piece.
-    root : ndarray
-        About where it would begin from nothing, next to which formulas are singular: at `low` or below.
-    lost : ndarray of bool
-        Whether contact dwindles to nothing towards `high`, as on unloading where asperities soften.
-    """
-
-    separation: Ints
-    low: Array
+    separation: Ints  # which of the separations
+    low: Array  # reduced heights; infinite where the stretch goes on beyond the range
     high: Array
-    piece: Ints
+    piece: Ints  # which formula
+    # whether contact begins at `low` from nothing, rather than with a jump or from another piece
     begins: NDArray[np.bool_]
+    # about where it would begin from nothing, next to which formulas are singular: at `low` or below
     root: Array
+    # whether contact dwindles to nothing towards `high`, as on unloading where asperities soften
     lost: NDArray[np.bool_]
 
 

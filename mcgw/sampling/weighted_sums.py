@@ -95,21 +95,11 @@ def _sum_cells(who: Any, kinds: Any, mesh: Any, table: Any, counts: Any, bounds:
 
 @dataclass(frozen=True)
 class WithRadii(OneByOne):
-    """A uniform and a radius for each asperity.
+    """A uniform and a radius for each asperity."""
 
-    Parameters
-    ----------
-    mesh : Mesh
-        The cells, whose heights the radii go with.
-    table : RadiusTable
-        The law of the radii.
-    families : Families
-        Powers of the radius that are asked for.
-    """
-
-    mesh: Mesh
-    table: RadiusTable
-    families: Families
+    mesh: Mesh  # the cells, whose heights the radii go with
+    table: RadiusTable  # the law of the radii
+    families: Families  # powers of the radius that are asked for
 
     def moments(self, seed: int, first: int, counts: Ints, layout: Layout) -> Array:
         """Draw sums over the uniforms of each cell, each with a power of its radius, family by family.

@@ -18,22 +18,12 @@ from mcgw.scene.scene import Scene
 
 @dataclass(frozen=True)
 class _Pieces:
-    """Formulas of pieces of a law.
+    """Formulas of pieces of a law."""
 
-    Parameters
-    ----------
-    kinds : tuple of (Branch, str, int, float)
-        Way, quantity, piece and scale of each kind of row.
-    kind : ndarray of int
-        Of each row.
-    h, low : ndarray
-        Separation of each row, and height from which on it holds.
-    """
-
-    kinds: tuple[tuple[Branch, str, int, float], ...]
-    kind: Ints
-    h: Array
-    low: Array
+    kinds: tuple[tuple[Branch, str, int, float], ...]  # branch, quantity, piece and scale of each kind of row
+    kind: Ints  # of each row
+    h: Array  # separation of each row
+    low: Array  # height from which on it holds
 
     def values(self, rows: Ints, above: Array, e: Array) -> Array:
         """Values at heights `above` the separation of each row, of modulus `e`: shape (points, rows)."""
@@ -71,21 +61,9 @@ class _Pieces:
 
 
 def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh) -> Rows:
-    """Rows of some quantities at all separations of a scene, which increase.
+    """Return rows of quantities at all separations of a scene: by quantity, separation and piece, increasing.
 
-    Parameters
-    ----------
-    scene : Scene
-        With any contact law.
-    quantities : tuple of str
-        Which; none that counts asperities.
-    mesh : Mesh
-        Its cells end at every break.
-
-    Returns
-    -------
-    Rows
-        Quantity by quantity, at increasing separations, piece by piece.
+    None of the quantities counts asperities; cells of the mesh end at every break of the contact law.
     """
     separations = np.array(scene.all_separations)
     parts: list[tuple[NDArray[Any], ...]] = []

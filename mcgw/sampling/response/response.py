@@ -33,25 +33,13 @@ _WIDTH = 64  # surfaces at a time: what a tile needs of them stays in the innerm
 
 
 class Lines(NamedTuple):
-    """Pieces of rows of a matrix, one an array element; a row may have several.
+    """Pieces of rows of a matrix, one an array element; a row may have several."""
 
-    Attributes
-    ----------
-    row : ndarray of int
-        Whose they are.
-    start, length : ndarray of int
-        First column, and number of columns.
-    at : ndarray of int
-        Where their values begin.
-    values : ndarray
-        Of the columns of all lines.
-    """
-
-    row: Ints
-    start: Ints
-    length: Ints
-    at: Ints
-    values: Array
+    row: Ints  # whose they are
+    start: Ints  # first column
+    length: Ints  # number of columns
+    at: Ints  # where their values begin
+    values: Array  # of the columns of all lines
 
     def entries(self) -> tuple[Ints, Ints, Array]:
         """Row, column and value of everything that is not zero."""
@@ -70,33 +58,15 @@ def matrix_of(response: Any) -> Array:
 
 @dataclass(frozen=True)
 class Response:
-    """A sparse matrix that runs from the moments to the answers by way of the tree.
+    """A sparse matrix that runs from the moments to the answers by way of the tree."""
 
-    Parameters
-    ----------
-    layout : Layout
-        The moments that each cell must have.
-    shape : (int, int)
-        Number of quantities and separations.
-    given : ndarray of int
-        Which moment each row of the given groups is, -1 for zeros; shape (groups, 4).
-    ends : ndarray of int
-        A group is computed in a step: how many tiles are used up to each step and with it.
-    columns : ndarray of int
-        Group of columns of each tile.
-    values : ndarray
-        Of the tiles, shape (tiles, 4, 4): row, column.
-    answers : ndarray of int
-        Which answer each computed row is, -1 for none; shape (steps, 4).
-    """
-
-    layout: Layout
-    shape: tuple[int, int]
-    given: Ints
-    ends: Ints
-    columns: Ints
-    values: Array
-    answers: Ints
+    layout: Layout  # the moments that each cell must have
+    shape: tuple[int, int]  # number of quantities and separations
+    given: Ints  # which moment each row of the given groups is, -1 for zeros; shape (groups, 4)
+    ends: Ints  # a group is computed in a step: how many tiles are used up to each step and with it
+    columns: Ints  # group of columns of each tile
+    values: Array  # of the tiles, shape (tiles, 4, 4): row, column
+    answers: Ints  # which answer each computed row is, -1 for none; shape (steps, 4)
 
     def out_of(self, layout: Layout) -> "Response":
         """Return the same, bit by bit, out of moments of which each cell may have more than this needs."""
@@ -170,28 +140,14 @@ def _add(tile: Any, table: Any, start: Any, stride: Any, rows: Any, sums: Any, n
 
 @dataclass(frozen=True)
 class Parts:
-    """What a response is made of.
+    """What a response is made of."""
 
-    Parameters
-    ----------
-    mesh, tree : Mesh, Tree
-        Cells, and the nodes over them.
-    rows : Rows
-        What to simulate.
-    entries : Entries
-        What each node gives to the rows.
-    plain : ndarray of int
-        How many T_j each node has.
-    layout : Layout
-        Moments of the cells.
-    """
-
-    mesh: Mesh
-    tree: Tree
-    rows: Rows
-    entries: Entries
-    plain: Ints
-    layout: Layout
+    mesh: Mesh  # cells
+    tree: Tree  # the nodes over them
+    rows: Rows  # what to simulate
+    entries: Entries  # what each node gives to the rows
+    plain: Ints  # how many T_j each node has
+    layout: Layout  # moments of the cells
 
 
 def parts_of(scene: Scene, mesh: Mesh, quantities: tuple[str, ...], accuracy: float) -> Parts:

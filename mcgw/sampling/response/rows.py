@@ -18,19 +18,11 @@ from mcgw.scene.scene import Scene
 
 
 class Powers(NamedTuple):
-    """Formulas of Hertz's law: ``scale (s - h)^exponent e(s)``, the modulus only where the row is graded.
+    """Formulas of Hertz's law: ``scale (s - h)^exponent e(s)``, the modulus only where the row is graded."""
 
-    Attributes
-    ----------
-    exponent, scale : ndarray
-        Of each row: whole or half-integer exponents.
-    graded : ndarray of bool
-        As `Rows.graded`.
-    """
-
-    exponent: Array
+    exponent: Array  # of each row: whole or half-integer
     scale: Array
-    graded: NDArray[np.bool_]
+    graded: NDArray[np.bool_]  # as `Rows.graded`
 
     def values(self, rows: Ints, above: Array, e: Array) -> Array:
         """Values at heights `above` the separation of each row, of modulus `e`: shape (points, rows)."""
@@ -51,46 +43,23 @@ class Powers(NamedTuple):
 
 @dataclass(frozen=True)
 class Rows:
-    """What is asked, one row an array element.
+    """What is asked, one row an array element."""
 
-    Parameters
-    ----------
-    h : ndarray
-        Reduced separation of the row.
-    low, high : ndarray
-        Heights between which its formula holds.
-    begins : ndarray of bool
-        Whether contact begins at `low`: there `at_start` of the formulas tells what it is made of.
-    rooted : ndarray of bool
-        Whether it has a root there, as a part of it or as a factor.
-    rough : ndarray of bool
-        Whether it begins with a power that no series resolves: on the smallest of cells it is taken as it is.
-    lost : ndarray of bool
-        Whether it ends with such a power at `high`, on the smallest of cells alike.
-    graded : ndarray of bool
-        Whether it depends on the modulus.
-    kind : ndarray of int
-        Which formula: those of one kind differ in their separation alone.
-    answer : ndarray of int
-        Which answer it adds to: quantity by quantity, at increasing separations.
-    total : ndarray
-        Mean sum over a surface of the answer, where so many touch that it is sure to be of that size; else 0.
-    formulas : Powers, or those of `mcgw.sampling.response.law_rows`
-        What holds.
-    """
-
-    h: Array
-    low: Array
-    high: Array
+    h: Array  # reduced separation of the row
+    low: Array  # height from which its formula holds
+    high: Array  # and up to which
+    # whether contact begins at `low`: there `at_start` of the formulas tells what it is made of
     begins: NDArray[np.bool_]
-    rooted: NDArray[np.bool_]
+    rooted: NDArray[np.bool_]  # whether it has a root there, as a part of it or as a factor
+    # whether it begins with a power that no series resolves: on the smallest of cells it is taken as it is
     rough: NDArray[np.bool_]
-    lost: NDArray[np.bool_]
-    graded: NDArray[np.bool_]
-    kind: Ints
-    answer: Ints
+    lost: NDArray[np.bool_]  # whether it ends with such a power at `high`, on the smallest of cells alike
+    graded: NDArray[np.bool_]  # whether it depends on the modulus
+    kind: Ints  # which formula: those of one kind differ in their separation alone
+    answer: Ints  # which answer it adds to: quantity by quantity, at increasing separations
+    # mean sum over a surface of the answer, where so many touch that it is sure to be of that size; else 0
     total: Array
-    formulas: Any
+    formulas: Any  # what holds
 
     def order(self, answers: int) -> Ints:
         """So many answers in an order in which neighbours need the same cells."""
@@ -102,15 +71,7 @@ class Rows:
     def nearest(self, starts: Array) -> tuple[Ints, Ints]:
         """Of each kind the row of the highest separation that is smooth on each cell: the hardest to resolve.
 
-        Parameters
-        ----------
-        starts : ndarray
-            Where the cells begin, increasing.
-
-        Returns
-        -------
-        (ndarray, ndarray)
-            Cells and rows, pair by pair.
+        Cells, which begin at `starts`, and rows, pair by pair.
         """
         found = [(np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64))]
         for kind in np.unique(self.kind):
@@ -169,19 +130,11 @@ def power_of(exponent: Array | float, x: Array) -> Array:
 
 @dataclass(frozen=True)
 class Sixteen:
-    """Quantiles of the heights in contact at each separation: for the order of magnitude of a sum.
+    """Quantiles of the heights in contact at each separation: for the order of magnitude of a sum."""
 
-    Parameters
-    ----------
-    contacts : ndarray
-        Mean number on a surface, shape (separations,).
-    approach, e : ndarray
-        Heights above the separation, and E*(s)/E* there; shape (separations, 16).
-    """
-
-    contacts: Array
-    approach: Array
-    e: Array
+    contacts: Array  # mean number on a surface, shape (separations,)
+    approach: Array  # heights above the separation, shape (separations, 16)
+    e: Array  # E*(s)/E* there
 
     @classmethod
     def of(cls, scene: Scene) -> "Sixteen":

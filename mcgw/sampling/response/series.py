@@ -30,41 +30,20 @@ TABLES = np.ascontiguousarray(TO_COEFFICIENTS.T), _times_u(len(NODES)), U
 
 
 class Entries(NamedTuple):
-    """Series of rows on nodes, one an array element.
+    """Series of rows on nodes, one an array element."""
 
-    Attributes
-    ----------
-    node, row : ndarray of int
-        Whose they are.
-    rooted : ndarray of bool
-        Whether they multiply the R_j of a cell, or the T_j of a node.
-    length : ndarray of int
-        How many coefficients each has; further ones are zero.
-    coefficients : ndarray
-        Of all of them, one after the other.
-    """
-
-    node: Ints
-    row: Ints
-    rooted: NDArray[np.bool_]
-    length: Ints
-    coefficients: Array
+    node: Ints  # of which node
+    row: Ints  # of which row
+    rooted: NDArray[np.bool_]  # whether they multiply the R_j of a cell, or the T_j of a node
+    length: Ints  # how many coefficients each has; further ones are zero
+    coefficients: Array  # of all of them, one after the other
 
 
 @njit()
 def meeting(low: Any, high: Any, rooted: Any, split: Any, start: Any, end: Any) -> Any:
-    """Whether a row and a node have no heights in common, some, or the row is one smooth function there.
+    """Return how a row that holds from `low` to `high` meets a node: not, as one smooth function, or partly.
 
-    Parameters
-    ----------
-    low, high : float
-        Between which the formula of the row holds.
-    rooted : bool
-        Whether the row begins with a root.
-    split : bool
-        Whether a modulus that it depends on has a break inside the node.
-    start, end : float
-        Of the node.
+    The row may begin with a root, and a modulus that it depends on may have a break inside the node: `split`.
     """
     if not (low < end and high > start):
         return APART

@@ -27,25 +27,14 @@ _DIGITS = 8.0  # last digits of a height that a formula may lose
 
 @dataclass(frozen=True)
 class Tree:
-    """Nodes: first the cells in their order, then parents, each after its two children.
+    """Nodes: first the cells in their order, then parents, each after its two children."""
 
-    Parameters
-    ----------
-    first, last : ndarray of int
-        Range of cells ``first <= c < last`` of each node.
-    left, right : ndarray of int
-        Children of each node, -1 for a cell.
-    probability : ndarray
-        Of a height in each node, shape (nodes,).
-    above : ndarray
-        Heights above the lower edges of nodes, at the Chebyshev points of their variables: (nodes, points).
-    """
-
-    first: NDArray[np.int64]
-    last: NDArray[np.int64]
-    left: NDArray[np.int64]
-    right: NDArray[np.int64]
-    probability: Array
+    first: NDArray[np.int64]  # first cell of each node
+    last: NDArray[np.int64]  # the cell after its last one
+    left: NDArray[np.int64]  # one child of each node, -1 for a cell
+    right: NDArray[np.int64]  # the other
+    probability: Array  # of a height in each node, shape (nodes,)
+    # heights above the lower edges of nodes, at the Chebyshev points of their variables: (nodes, points)
     above: Array
 
     @property
@@ -83,17 +72,8 @@ def _heights_above(mesh: Mesh, start: Array, end: Array) -> Array:
 def transfers(mesh: Mesh, tree: Tree, moments: Ints) -> tuple[Ints, Ints, Ints, Array]:
     """Return what the moments T_k of each child add to the moments T_j of its parent.
 
-    Parameters
-    ----------
-    mesh, tree : Mesh, Tree
-        Cells, and the nodes over them.
-    moments : ndarray of int
-        How many T_j each node has.
-
-    Returns
-    -------
-    (ndarray, ndarray, ndarray, ndarray)
-        Parents, children, j, and coefficients of T_0, T_1, ... of the child, shape (lines, order).
+    A node has so many `moments`. Parents, children, j, and coefficients of T_0, T_1, ... of the child, shape
+    (lines, order).
     """
     parent = np.repeat(np.arange(mesh.size, tree.size), 2)
     child = np.stack([tree.left, tree.right], axis=1)[mesh.size :].ravel()
@@ -133,38 +113,21 @@ def _transfer(x: Any, moments: Any, of_parent: Any, to_coefficients: Any, coeffi
 
 @dataclass(frozen=True)
 class Nodes:
-    """All nodes, one an array element.
+    """All nodes, one an array element."""
 
-    Parameters
-    ----------
-    start, end : ndarray
-        Their heights, shape (nodes,).
-    above, moduli : ndarray
-        Heights above the start at the Chebyshev points of a node's variable, and E*(s)/E* there; shape
-        (nodes, points).
-    parent : ndarray of bool
-        Whether it has children.
-    broken : ndarray of bool
-        Whether the grading has a break inside a parent, which its values at 20 heights may not show.
-    crowd : ndarray
-        Asperities of a surface there, at most.
-    even, noise : ndarray
-        Share of the largest value that errors are held against, and share that the last digit of a height
-        makes: of rows that depend on the modulus.
-    accuracy : float
-        Of a series, relative to a value on the node, or to the sum of a surface where that is sure to be
-        larger.
-    """
-
-    start: Array
-    end: Array
-    above: Array
-    moduli: Array
-    parent: NDArray[np.bool_]
+    start: Array  # height at which each begins, shape (nodes,)
+    end: Array  # and ends
+    above: (
+        Array  # heights above the start at the Chebyshev points of a node's variable, shape (nodes, points)
+    )
+    moduli: Array  # E*(s)/E* there
+    parent: NDArray[np.bool_]  # whether it has children
+    # whether the grading has a break inside a parent, which its values at 20 heights may not show
     broken: NDArray[np.bool_]
-    crowd: Array
-    even: Array
-    noise: Array
+    crowd: Array  # asperities of a surface there, at most
+    even: Array  # share of the largest value that errors are held against, of rows that depend on the modulus
+    noise: Array  # share that the last digit of a height makes, of the same rows
+    # of a series, relative to a value on the node, or to the sum of a surface where that is sure to be larger
     accuracy: float
 
     @classmethod

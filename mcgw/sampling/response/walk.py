@@ -33,15 +33,7 @@ _NONE = np.empty(0, dtype=np.int64)
 
 
 class _Walk:
-    """Series of rows.
-
-    Parameters
-    ----------
-    tree, nodes : Tree, Nodes
-        Nodes over the cells.
-    rows : Rows
-        What to simulate.
-    """
+    """Series of rows on the nodes of a tree."""
 
     def __init__(self, tree: Tree, nodes: Nodes, rows: Rows) -> None:
         self._tree, self._nodes, self._rows = tree, nodes, rows
@@ -193,26 +185,9 @@ class UnresolvedError(ValueError):
 
 
 def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Ints, Ints]:
-    """Series of all rows.
+    """Return the series of all rows; how many T_j each node must have, and how many R_j each cell.
 
-    Parameters
-    ----------
-    mesh, tree, nodes : Mesh, Tree, Nodes
-        Cells, and the nodes over them.
-    rows : Rows
-        What to simulate.
-
-    Returns
-    -------
-    (Entries, ndarray, ndarray)
-        The series; how many T_j each node must have, and how many R_j each cell.
-
-    Raises
-    ------
-    UnresolvedError
-        If a row is not resolved on some cells.
-    ValueError
-        If a row begins or ends inside a cell.
+    UnresolvedError if a row is not resolved on some cells, ValueError if one begins or ends inside a cell.
     """
     series = _Walk(tree, nodes, rows)
     entries, plain, rooted, unresolved, inside = series.entries()
