@@ -141,9 +141,6 @@ def _conduction(scene: Scene) -> Iterator[str]:
             )
 
 
-# --- contact laws: use beyond their range, and what other plastic laws would give ---
-
-
 def _yielding(scene: Scene) -> Iterator[str]:
     """State how much comparable laws differ, how many contacts have yielded, and what stiffness is."""
     named, h = f'contact.law = "{scene.law.name}"', scene.lowest
@@ -236,14 +233,10 @@ _OF_LAWS: dict[str, Callable[[Scene], Iterator[str]]] = {
 
 
 class OtherLaws(NamedTuple):
-    """Means under other laws, Hertz's too, over those under the law of a scene, by name, at one separation.
+    """Means under other laws, Hertz's too, over those under the law of a scene, by name."""
 
-    The separation is the middle one of the scene, d/sigma; at the critical penetration over sigma asperities
-    of modulus E* yield under each law.
-    """
-
-    separation: float
-    critical: float
+    separation: float  # d/sigma, the middle one of the scene
+    critical: float  # penetration over sigma at which asperities of modulus E* yield under each law
     load: dict[str, float]
     area: dict[str, float]
 

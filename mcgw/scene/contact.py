@@ -211,7 +211,7 @@ class Joint:
         return analytic.Joint(self.gas, *numbers)
 
     def mistakes(self, scene: Any) -> Iterator[str]:
-        """Gas that nobody knows the gap of."""
+        """Gas of which too much is told, or that nobody knows the gap of."""
         try:
             _ = scene.filled
         except ValueError as error:

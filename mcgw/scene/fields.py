@@ -13,7 +13,6 @@ from analytic import HeightLaw, MeasuredRadii, RandomCurvature, SpectralMoments,
 from analytic.arrays import Array
 from analytic.joint import rise_of_summits
 from analytic.laws import Branch, ContactLaw, Film, Hertz
-from mcgw.machine.memory import kept
 from mcgw.scene.contact import Contact, Joint
 from mcgw.scene.ensemble import Sampling
 from mcgw.scene.measured import Fitted, Uncertainty, moments_of
@@ -34,8 +33,10 @@ def _of(path: str) -> Any:
 
 
 class Flat:
-    """Values of the parts of a scene, which others read as its own."""
+    """Values of the parts of a scene and of its model, which others read as its own."""
 
+    alone: analytic.Model = _of("theory.alone")  # without interaction and gas
+    ways: Branch = _of("theory.ways")  # of loading or unloading
     law: ContactLaw = _of("contact.law")
     quantities: tuple[str, ...] = _of("contact.quantities")
     unload_from: float | None = _of("contact.unload_from")
@@ -114,11 +115,6 @@ class Fields(Flat):
         )
 
     @property
-    def alone(self) -> analytic.Model:
-        """The same of its asperities alone, without interaction and gas."""
-        return self.theory.alone  # type: ignore[no-any-return]
-
-    @property
     def moments(self) -> SpectralMoments | None:
         """Spectral moments of its surface, if they are known."""
         return moments_of(self.surface, self.heights, self.fitted)
@@ -185,11 +181,6 @@ class Fields(Flat):
         return self.hardness, 0.3 if poisson is None else poisson
 
     @property
-    def ways(self) -> Branch:
-        """Loading or unloading: the ways that its quantities need."""
-        return self.theory.ways
-
-    @property
     def all_separations(self) -> tuple[float, ...]:
         """Every separation once, increasing."""
         return tuple(sorted(set(self.separations)))
@@ -232,15 +223,16 @@ class Fields(Flat):
         lowest = min(self.separations)
         return lowest if self.unload_from is None else min(lowest, self.unload_from)
 
-    @property
+    @cached_property
     def highest(self) -> float:
         """Height that hardly any asperity exceeds, above every separation."""
-        return min(max(_ends(self.heights)[1], max(self.separations) + 1), self.heights.support[1])
+        rare = float(self.heights.isf(np.array(_BEYOND)))
+        return min(max(rare, max(self.separations) + 1), self.heights.support[1])
 
-    @property
+    @cached_property
     def least(self) -> float:
         """Height that hardly any asperity is below."""
-        return _ends(self.heights)[0]
+        return float(self.heights.ppf(np.array(_BEYOND)))
 
     def negative_above(self, h: float) -> float | None:
         """First height that touches at `h` where the grading is negative, clipped or not; or None."""
@@ -248,10 +240,3 @@ class Fields(Flat):
         high = min(max(self.highest, h + 1), end)
         start = max(h, self.least - 1, bottom)
         return analytic.first_negative(self.grading, start, high) if start < high else None
-
-
-@kept(64)  # needed by every scene, a few times
-def _ends(heights: analytic.HeightLaw) -> tuple[float, float]:
-    """Heights that hardly any asperity of a law is below or above."""
-    share = np.array(_BEYOND)
-    return float(heights.ppf(share)), float(heights.isf(share))

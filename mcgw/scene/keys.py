@@ -186,6 +186,5 @@ TABLES: dict[str, Table] = {
 
 KEYS = {name: {row.name: row for row in table.rows} for name, table in TABLES.items()}
 SURFACE_UNITS = {name: KEYS["surface"][name].kind.unit for name in (*SUMMITS, "nominal_area", "E_star")}
-INSIDE = {
-    name: [x.rpartition(".")[2] for x in TABLES if x and x.rpartition(".")[0] == name] for name in TABLES
-}
+_PLACES = [name.rpartition(".") for name in TABLES if name]
+INSIDE = {name: [inner for outer, _, inner in _PLACES if outer == name] for name in TABLES}

@@ -122,16 +122,15 @@ class List(Kind):
         found: list[Any] = []
         few = "give at least one; " if value == [] and self.least == 1 else ""
         reason = ""
-        if isinstance(value, list) and self.least <= len(value) <= self.most:
-            try:
+        try:
+            if isinstance(value, list) and self.least <= len(value) <= self.most:
                 found.extend(self.item.read(path, each) for each in value)
-            except SceneError:
-                if isinstance(self.item, Word):
-                    raise
-                reason = f"; value {len(found) + 1} is {brief(repr(value[len(found)]))}"
-            else:
-                if not (self.once and len(set(found)) < len(found)):
+                if not self.once or len(set(found)) == len(found):
                     return tuple(found)
+        except SceneError:
+            if isinstance(self.item, Word):
+                raise
+            reason = f"; value {len(found) + 1} is {brief(repr(value[len(found)]))}"
         raise mistake(path, value, f"{few}{self.advice}{reason}")
 
 

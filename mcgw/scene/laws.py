@@ -72,9 +72,6 @@ class Graded:
     negative: Literal["error", "clip", "allow"] = "error"
 
 
-# --- objects of Python, or None ---
-
-
 def grading_given(given: Any) -> Grading | None:
     """Accept a grading, or any function of an array of heights."""
     if isinstance(given, type) or not callable(given):
@@ -88,9 +85,6 @@ def heights_given(given: Any) -> HeightLaw | None:
         return analytic.ScipyHeights(given)
     own = all(hasattr(given, name) for name in _LAW_OF_HEIGHTS) and not isinstance(given, type)
     return given if own else None
-
-
-# --- by keys ---
 
 
 def _law(section: Section, default: str, **others: Callable[..., Any]) -> Any:
@@ -205,9 +199,6 @@ def evenly(start: float, stop: float, num: int) -> tuple[float, ...]:
     return tuple(float(f"{h:.15g}") for h in np.linspace(start, stop, num))
 
 
-# --- files beside a scene: moduli against height, heights, summits with radii ---
-
-
 def _columns(path: Path, most: int, *axes: Mapping[str, tuple[str, float]]) -> list[Array]:
     """Return a column of a CSV file for each axis, by one of its names, over a size in the SI unit of it.
 
@@ -219,27 +210,22 @@ def _columns(path: Path, most: int, *axes: Mapping[str, tuple[str, float]]) -> l
         header, *rows = list(csv.reader(lines)) or [[]]
     except csv.Error as error:
         raise ValueError(f"{path}: is not a table: {error}") from None
-    found: list[list[Array]] = [[] for _ in axes]
-    for k, text in enumerate(header):
-        match = _NAMED.fullmatch(text)
-        name, unit = (match[1], match[2] or "") if match else (text, "")
-        for columns, axis in zip(found, axes, strict=True):
-            si, size = axis.get(name, ("1", 1.0))
-            if name in axis and not math.isnan(signed(f"1{unit}", si)):
-                cells = [row[k] if len(row) == len(header) else "" for row in rows]
-                own = [
-                    x if math.isfinite(x := signed(f"{cell}{unit}", si)) else signed(cell, si)
-                    for cell in cells
-                ]
-                columns.append(np.array(own) / size)
-    names = " and ".join(" or ".join(axis) for axis in axes)
-    if any(len(columns) != 1 for columns in found):
-        raise ValueError(
-            f"{path}: the first line must name {names}, with commas, such as z (um),E_star (GPa)"
-        )
-    for k in np.flatnonzero(~np.isfinite(found).all(axis=(0, 1)))[:1]:
+    names, found = " and ".join(" or ".join(axis) for axis in axes), list[Array]()
+    heads = [(k, match) for k, text in enumerate(header) if (match := _NAMED.fullmatch(text))]
+    for axis in axes:
+        own = [(k, match[2] or "", *axis[match[1]]) for k, match in heads if match[1] in axis]
+        own = [each for each in own if not math.isnan(signed(f"1{each[1]}", each[2]))]
+        if len(own) != 1:
+            raise ValueError(
+                f"{path}: the first line must name {names}, with commas, such as z (um),E_star (GPa)"
+            )
+        ((k, unit, si, size),) = own
+        cells = [row[k] if len(row) == len(header) else "" for row in rows]
+        in_unit, own_unit = (np.array([signed(cell + each, si) for cell in cells]) for each in (unit, ""))
+        found.append(np.where(np.isfinite(in_unit), in_unit, own_unit) / size)
+    for k in np.flatnonzero(~np.isfinite(found).all(axis=0))[:1]:
         raise ValueError(f"{path}: row {k + 1} below the header has no number as {names}")
-    return [column for (column,) in found]
+    return found
 
 
 def read_grading(path: Path, surface: Surface) -> analytic.Table:

@@ -35,9 +35,6 @@ _WHOLE = {key: f"{name}.{key}" for name in filter(None, KEYS) for key in KEYS[na
 _WHOLE |= {"law": "contact.law"}
 
 
-# --- from Python ---
-
-
 def of_arguments(given: Mapping[str, Any]) -> Values:
     """Read parts of a scene, and keys of them by their names, as its file would be read; None: left out.
 
@@ -108,9 +105,6 @@ def with_changes(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dic
     return changed
 
 
-# --- from tables ---
-
-
 def of_tables(document: Tables, folder: Path = Path(), seed: Seeds | None = None) -> Values:
     """Read the tables of a scene, and the files beside it in `folder`; where there is no seed, ask `seed`.
 
@@ -127,9 +121,13 @@ def of_tables(document: Tables, folder: Path = Path(), seed: Seeds | None = None
             raise mistake(name, given, f"must be a table: write [{name}] above its keys{other}")
         of[name] = Section(name, given, table.rows, INSIDE[name], _WHOLE)
     surface, heights, radii = _surface_and_summits(of, folder)
-    joint = _joint(of["joint"])
+    joint = of["joint"].make(Joint) or Joint()
     separations, contact = _contact(of, heights, joint)
     interaction, fitted = "interaction" in document, "fitted" in document
+    left_out: Values = dict.fromkeys(("n_surfaces", "n_asperities"), LeftOut())
+    if "seed" not in of["ensemble"].table:
+        drawn = None if seed is None else seed()
+        left_out["seed"] = LeftOut(secrets.randbits(63) if drawn is None else drawn)
     values = {
         "title": of[""].get("title"),
         "surface": surface,
@@ -141,7 +139,7 @@ def of_tables(document: Tables, folder: Path = Path(), seed: Seeds | None = None
         "contact": contact,
         "interaction": of["interaction"].make(analytic.Interaction) if interaction else None,
         "joint": joint,
-        "ensemble": _ensemble(of["ensemble"], seed),
+        "ensemble": of["ensemble"].make(Sampling, **left_out),
         "fitted": of["fitted"].make(Fitted) if fitted else None,
     }
     if problems := [line for section in of.values() for line in section.problems]:
@@ -184,9 +182,8 @@ def _surface_and_summits(of: Mapping[str, Section], folder: Path) -> tuple[Any, 
             largest = largest_radius / surface.radius if surface and largest_radius else math.inf
             return RandomCurvature(heights.alpha, largest)
         if isinstance(curvature, RandomCurvature) and curvature.alpha != getattr(heights, "alpha", None):
-            raise ValueError(
-                f'curvature: needs heights.law = "nayak", alpha = {curvature.alpha:g}; use these'
-            )
+            needed = f'heights.law = "nayak", alpha = {curvature.alpha:g}'
+            raise ValueError(f"curvature: needs {needed}; use these")
         return None if curvature == "mean" else curvature
 
     return surface, heights, summits.make(radii_of) if surface and heights else None
@@ -235,24 +232,3 @@ def _softer(section: Section, law: ContactLaw) -> Values:
         if "hardness" not in section.table:
             section.fail("poisson", "give hardness too, or leave it out")
     return found
-
-
-def _joint(section: Section) -> Joint:
-    """Return a joint of which film and gas can be made; what else is wrong is noted where its keys are."""
-    if not section.problems:
-        joint = Joint(**section.values)
-        try:
-            _ = joint.film, joint.filling  # which are made of it
-            return joint
-        except ValueError as error:
-            section.problems.append(f"joint.{error}")
-    return Joint()
-
-
-def _ensemble(section: Section, seed: Seeds | None) -> Sampling:
-    """How many surfaces, and how they are drawn; numbers that nobody gave are marked."""
-    values = dict.fromkeys(("n_surfaces", "n_asperities"), LeftOut()) | section.values
-    if "seed" not in section.table:
-        other = None if seed is None else seed()
-        values["seed"] = LeftOut(secrets.randbits(63) if other is None else other)
-    return Sampling(**values)

@@ -219,7 +219,7 @@ def _refuse_mistakes(scene: Scene) -> None:
         (scene.contact.mistakes, scene.ensemble.mistakes),
         (scale_mistakes,),
         [] if scene.hertzian else [law_mistakes],
-        [] if scene.gas is None else [scene.joint.mistakes],
+        [] if scene.joint.gas is None else [scene.joint.mistakes],
         [] if scene.interaction is None else [interaction_mistakes],
     ]
     if not isinstance(scene.grading, Homogeneous) or scene.law.name == "custom":

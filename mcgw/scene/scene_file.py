@@ -212,9 +212,6 @@ def scene_document(scene: Scene, *, heights_file: str | None = None) -> dict[str
     return {key: value for key, value in document.items() if value or key == "title"}
 
 
-# --- two rough bodies, each in a file ---
-
-
 def with_bodies(document: Mapping[str, Any], folder: Path) -> Mapping[str, Any]:
     """Put the surface of two bodies into the tables of a scene in place of the files that describe them.
 

@@ -228,9 +228,6 @@ def _spectral(
     return Spectral(found, _surface(*summits, nominal_area, E_star, uncertainty))
 
 
-# --- values that are perhaps in other units, or beyond double precision ---
-
-
 def warn_of_units(doubts: Iterable[str]) -> None:
     """Ask a caller in Python, once for each text; commands tell them as notes."""
     for line in doubts:

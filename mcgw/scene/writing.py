@@ -91,9 +91,6 @@ def contact_law_table(law: ContactLaw) -> dict[str, Any]:
     return {"name": law.name, **as_toml(numbers | series), **unchecked}
 
 
-# --- in words: laws with their numbers, and what differs from Hertz and exact values ---
-
-
 def contact_facts(scene: Fields) -> list[tuple[str, str]]:
     """Facts, by name, that differ from Hertz's contact pressed once."""
     facts, film = [], scene.film

@@ -41,18 +41,13 @@ def grid_of(kind: str, model: str, interaction: str) -> "Grid":
 
 
 class Expected(NamedTuple):
-    """Errors at some loads; nan outside the measured range.
+    """Errors at some loads; nan outside the measured range."""
 
-    The mean over maps; how far 95 % of surfaces are from it; the fewest maps behind a number; between which
-    loads the area was measured here, nan if nowhere; and from which on there is a number of it, by theory
-    below those.
-    """
-
-    bias: dict[str, Array]
-    off: dict[str, Array]
-    maps: int
-    loads: tuple[float, float]
-    lightest: float
+    bias: dict[str, Array]  # mean over maps
+    off: dict[str, Array]  # how far 95 % of surfaces are from it
+    maps: int  # the fewest behind a number
+    loads: tuple[float, float]  # between which the area was measured here; nan if nowhere
+    lightest: float  # from which on there is a number of it, by theory below those
 
 
 class Grid:
