@@ -19,18 +19,10 @@ _PRINTED = ("", "show", "solve", "elastic", "completion")  # their product is wh
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command.
+    """Run a command, by default that of this process, and return its exit code.
 
-    Parameters
-    ----------
-    argv : sequence of str, optional
-        Default: those of the process.
-
-    Returns
-    -------
-    int
-        0: done; 1: a comparison or a run failed, or a full disk does not take the output of a command that
-        has no other product; 2: bad input; 130, 143: interrupted by a signal.
+    0: done; 1: a comparison or a run failed, or a full disk does not take the output of a command that has no
+    other product; 2: bad input; 130, 143: interrupted by a signal.
     """
     asked = argparse.Namespace(command="")  # help, or the version
     with plain_output() as output:

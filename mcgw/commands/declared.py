@@ -84,9 +84,8 @@ def parser_of(names: Sequence[str] = ()) -> argparse.ArgumentParser:
         about, *sections = re.split(r"\n\n(?:Parameters|Examples)\n-+\n", cleandoc(function.__doc__))
         about = f"{about[0].lower()}{' '.join(about.split())[1:]}"
         example = f"example: {sections[-1]}" if sections else None
-        sub = commands.add_parser(
-            name, help=about.partition(". ")[0].rstrip("."), description=about, epilog=example
-        )
+        brief = about.partition(". ")[0].rstrip(".")
+        sub = commands.add_parser(name, help=brief, description=about, epilog=example)
         sub._negative_number_matcher = re.compile(r"-\.?\d")  # no option: a value such as -1MPa
         _add_arguments(sub, function, sections[0] if sections[1:] else "")
         amount = sub.add_mutually_exclusive_group()

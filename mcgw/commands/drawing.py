@@ -11,8 +11,6 @@ from mcgw.commands import kinds
 from mcgw.commands.outputs import details, news, notes
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
     from mcgw.ensemble.simulation import Forecast
     from mcgw.scene.scene import Scene
 
@@ -29,7 +27,7 @@ def drawing(
     """
     from mcgw.jobs.executors import Jobs as Processes, dask_executor
 
-    chosen: AbstractContextManager[Executor | None] = nullcontext()
+    chosen: AbstractContextManager[Any] = nullcontext()
     if jobs is not None:
         chosen = Processes(jobs)
     elif dask is not None:

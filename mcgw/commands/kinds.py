@@ -1,8 +1,7 @@
 """Kinds of parameters of commands: what a person types for each, and what the command's function then gets.
 
-A command is a function: see `mcgw.commands.declared`. A parameter of a plain type gets the text or number
-that is typed; one that is ``Annotated[type, kind]`` what its kind makes of it. Of those with a text beside
-the kind one at most may be given, or just one.
+A parameter of a plain type gets the text or number that is typed; one that is ``Annotated[type, kind]`` what
+its kind makes of it. Of those with a text beside the kind one at most may be given, or just one.
 """
 
 from argparse import Namespace
@@ -13,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from mcgw.commands.outputs import Output
+from mcgw.formats.units import parse
 
 if TYPE_CHECKING:
     from mcgw.scene.scene import Scene
@@ -49,8 +49,6 @@ def quantity(unit: str, metavar: str = "", about: str = "") -> Kind:
     """Return the kind of a positive number with a unit, in the SI unit named."""
 
     def read(given: Any, option: str, _call: Call) -> Any:
-        from mcgw.formats.units import parse
-
         return parse(given, unit, option) if isinstance(given, str) else given
 
     return Kind(metavar, about, read=read)
@@ -60,8 +58,6 @@ def values(unit: str) -> Kind:
     """Return the kind of numbers with units, and ranges of them; without a unit, others are left as typed."""
 
     def read(given: Any, option: str, _call: Call) -> Any:
-        from mcgw.formats.units import parse
-
         found: list[Any] = []
         for text in given or ():
             if ":" in text:
@@ -81,10 +77,7 @@ def ranged(text: str, option: str, unit: str = "") -> list[float]:
     """Return the N numbers from A to B of a text A:B:N, with a unit if one is given."""
     import numpy as np
 
-    from mcgw.formats.units import parse
-
-    begin, _, rest = text.partition(":")
-    end, _, number = rest.partition(":")
+    begin, end, number = [*text.split(":", 2), ""][:3]
     if not number.isdigit() or not 2 <= int(number) <= 1e6:
         example = {"Pa": "10kPa:20MPa:30", "N": "1N:100N:30"}.get(unit, "0.2:2:10")
         raise ValueError(f"{option} {text}: give A:B:N, such as {example}, with N from 2 to 1e6")
@@ -122,7 +115,11 @@ def _read(path: Any, call: Call) -> Any:
 
 def file_in(metavar: str = "", about: str = "", opened: Callable[[Any, Call], Any] = _read) -> Kind:
     """Return the kind of a file that is read, which no output may replace; `opened` makes the value."""
-    return Kind(metavar, about, "in", read=lambda given, _option, call: given and opened(given, call))
+
+    def read(given: Any, _option: str, call: Call) -> Any:
+        return given and opened(given, call)
+
+    return Kind(metavar, about, "in", read=read)
 
 
 def scene_file(*, others: bool = False, cautious: Literal["brief", "full", ""] = "brief") -> Kind:

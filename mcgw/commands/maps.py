@@ -110,7 +110,7 @@ def fit(
     if iso is not None:
         if map:
             raise ValueError(f"{map[0]}: give a map, or --iso with numbers, not both")
-        return _of_numbers(iso, output, E_star, assumed, nominal_area)
+        return _of_iso(iso, output, E_star, assumed, nominal_area)
     if not map:
         raise ValueError("MAP: give a map or profiles, or --iso with numbers such as Sq=0.8um Sdq=0.12")
     if cutoff is None:
@@ -164,9 +164,7 @@ def fit(
     return None
 
 
-def _of_numbers(
-    iso: list[str], output: Path, E_star: float, assumed: str, nominal_area: float | None
-) -> None:
+def _of_iso(iso: list[str], output: Path, E_star: float, assumed: str, nominal_area: float | None) -> None:
     """Write the scene of an isotropic Gaussian surface with these numbers."""
     from mcgw.maps.fitted_scene import scene_of_moments, write_scene
     from mcgw.maps.iso import moments_from
@@ -257,7 +255,7 @@ def surface(
     points = int(found[2] or found[1]), int(found[1])
     map_file, *beside = files_of_map(output)
     pixels = (Output(path, "the size of a pixel") for path in beside)
-    check_outputs([Output(map_file, "a map", own_endings=WRITTEN), *pixels])
+    check_outputs([Output(map_file, "a map", endings=WRITTEN), *pixels])
     if from_spectrum is not None:
         if scene is not None:
             raise ValueError("--from-spectrum: draws a map without asperities; leave out SCENE")

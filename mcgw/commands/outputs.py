@@ -16,8 +16,6 @@ from mcgw.machine.progress import watched
 QUIET, NEWS, ALL = range(3)  # only errors; what was made and found; everything
 _AMOUNT = ContextVar("_AMOUNT", default=NEWS)
 _inputs: ContextVar[tuple[Path, ...]] = ContextVar("_inputs", default=())
-
-
 _PICTURES = (  # that matplotlib writes
     ".eps", ".gif", ".jpg", ".jpeg", ".pdf", ".pgf", ".png", ".ps", ".raw", ".rgba", ".svg", ".svgz", ".tif",
     ".tiff", ".webp", ".avif",
@@ -37,12 +35,7 @@ class Output:
     what: str  # a key of `ENDINGS`, or anything with endings of its own
     option: str = "-o"  # that gave its name
     grows: bool = False  # the rules of ensembles say which may be replaced
-    own_endings: tuple[str, ...] = ()
-
-    @property
-    def endings(self) -> tuple[str, ...]:
-        """How its name may end."""
-        return self.own_endings or ENDINGS[self.what]
+    endings: tuple[str, ...] = ()  # where they are not those of `ENDINGS`
 
 
 def check_outputs(outputs: Iterable[Output], inputs: Iterable[Path] | None = None) -> None:
@@ -91,8 +84,9 @@ def _faults(output: Output, others: Iterable[Output]) -> Iterator[str]:
         if folder.suffix == ".parts" and any((folder / name).exists() for name in LOCK_FILES):
             yield f"{folder} is the folder of a run"
     yield from (f"is also the output of {other.option}" for other in others if _same_file(path, other.path))
-    if not path.name.lower().endswith(output.endings):
-        yield f"{output.what} is written there, whose name ends in {', '.join(output.endings)}"
+    endings = output.endings or ENDINGS[output.what]
+    if not path.name.lower().endswith(endings):
+        yield f"{output.what} is written there, whose name ends in {', '.join(endings)}"
     if output.grows:
         return
     if parts_of(path).exists():
@@ -104,7 +98,7 @@ def _faults(output: Output, others: Iterable[Output]) -> Iterator[str]:
             return
     if _holds_results(path):
         yield "is an ensemble of mcgw, which this would replace"
-    if not {*ENDINGS["an ensemble"]} & {*output.endings}:
+    if not {*ENDINGS["an ensemble"]} & {*endings}:
         yield "is an HDF5 file, which this would replace"
 
 

@@ -20,12 +20,11 @@ PRESETS = {
 }
 
 
-_PRESET = Kind(choices=tuple(PRESETS), words="".join(f"; {name}: {what}" for name, what in PRESETS.items()))
+_WORDS = "".join(f"; {name}: {what}" for name, what in PRESETS.items())
+Preset = Annotated[str, Kind(choices=tuple(PRESETS), words=_WORDS)]
 
 
-def init(
-    preset: Annotated[str, _PRESET] = "demo", *, output: Path | None = None, schema: bool = False
-) -> None:
+def init(preset: Preset = "demo", *, output: Path | None = None, schema: bool = False) -> None:
     """Write a commented scene to start from.
 
     Parameters
@@ -56,10 +55,10 @@ def init(
         if schema:
             scene = f"#:schema ./{SCHEMA}\n".encode() + scene
             if not beside.exists():
-                write_whole(beside, [known], expected=None)
+                write_whole(beside, known, expected=None)
             elif beside.read_bytes() != known:
                 raise ValueError(f"{beside}: already exists, from another version; remove it")
-        write_whole(path, [scene], expected=None)
+        write_whole(path, scene, expected=None)
     if schema:
         news(f"{beside}: with it editors complete and check {path.name}")
     news(f"next: mcgw run {path} -o {path.with_suffix('.h5')}")
@@ -74,8 +73,6 @@ def warm() -> None:
     """
     import os
 
-    import numpy as np
-
     from analytic import KogutEtsion, Nayak, RandomCurvature
     from mcgw.ensemble.simulation import simulate
     from mcgw.machine.compiling import loops_folder
@@ -83,11 +80,6 @@ def warm() -> None:
     from mcgw.maps.envelope import envelope, hidden_summits
     from mcgw.maps.fitting import fit
     from mcgw.maps.synthetic import asperities_of
-    from mcgw.maps.topography import Topography
-    from mcgw.sampling.block import Layout
-    from mcgw.sampling.cells import mesh_of
-    from mcgw.sampling.counts import counts_of
-    from mcgw.sampling.moments import OneByOne
     from mcgw.scene.scene import Scene
     from mcgw.scene.surface import Surface
 
@@ -96,22 +88,17 @@ def warm() -> None:
     scene = Scene(surface, separations=[0.0, 0.5, 2.0], ensemble=drawn, seed=1)
     yielding: dict[str, Any] = {"law": KogutEtsion(critical=0.1)}
     radii: dict[str, Any] = {"heights": Nayak(4.0), "summits": RandomCurvature(4.0)}
-    changes: list[dict[str, Any]] = [  # laws, samplers, crowds, statistics, radii
-        *(yielding, {**yielding, "unload_from": 0.0}, {**yielding, "sampler": "tail"}),
+    changes = (  # laws, samplers, crowds, statistics, radii
+        *(yielding, yielding | {"unload_from": 0.0}, yielding | {"sampler": "tail"}),
         *({"sampler": "direct"}, {"count": "poisson"}, {"keep": "statistics"}),
-        *({"sampler": "aggregate", "n_asperities": 10**6}, {**radii, "sampler": "tail"}, radii),
-    ]
-    mesh = mesh_of(scene)  # moments of every length, without physics
-    lengths = (np.resize(kinds, mesh.size) for kinds in ([10, 12, 16], [0, 0, 0, 4, 6, 11]))
-    OneByOne().moments(1, 0, counts_of(scene, mesh, 0, 20).cells, Layout(*lengths))
+        *({"sampler": "aggregate", "n_asperities": 10**6}, radii | {"sampler": "tail"}, radii),
+    )
     for each in steps(changes, "scenes"):
         simulate(scene.replace(**each))
     field = asperities_of(scene, 0)
     for periodic in (False, True):
-        envelope(field, (16, 16), periodic=periodic)
+        fit(envelope(field, (64, 64), periodic=periodic), cutoff=None)
         hidden_summits(field, periodic=periodic)
-    heights = np.random.default_rng(1).normal(size=(64, 64)) * 1e-6
-    fit(Topography(heights, (1e-6, 1e-6)), cutoff="8 um")
     news(f"all loops are compiled; cached in {os.environ.get('NUMBA_CACHE_DIR') or loops_folder()}")
 
 

@@ -1,7 +1,7 @@
 """Views of results: ``mcgw compare``, ``converge``, ``tradeoff``, ``report``, ``figures`` and ``export``."""
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from mcgw.commands.kinds import MaybeScene, SceneIn, SceneOrFile, Table, file_in, file_out, quantity, values
 from mcgw.commands.outputs import ALL, Output, check_outputs, details, news, says, tell_cautions
@@ -139,7 +139,7 @@ def report(
 
     ensemble = open_ensemble(file)
     page = report_html(ensemble, read_attributes(file), pressures)
-    write_whole(output, [page.encode()])
+    write_whole(output, page.encode())
     news(f"{output}: report, {len(page.encode()) / 1e6:.2f} MB; open it in a browser")
     tell_cautions(ensemble, f"mcgw show {file}")
 
@@ -248,16 +248,15 @@ def export(
 
     *tables, together = files_of_export(output, quantile)
     if to == "json":
-        check_outputs([Output(output, "a table", own_endings=(".json",))])
+        check_outputs([Output(output, "a table", endings=(".json",))])
     else:
-        form: Any = {"what": f"a table for {to}", "own_endings": PROGRAMS[to].endings}
-        check_outputs([*(Output(path, **form) for path in tables), Output(together, "a table")])
+        ours = (Output(path, f"a table for {to}", endings=PROGRAMS[to].endings) for path in tables)
+        check_outputs([*ours, Output(together, "a table")])
     made = exported(
         source, output, to=to, table=table, points=points, pressures=pressures, quantiles=quantile,
         units=units,
     )  # fmt: skip
-    words = ["pressure, area and conductance against the gap"]
-    if to != "json":
-        words = [f"{table}, mean over the surfaces", *["the same for a quantile"] * (len(made) - 2)]
-        words.append("all curves")
+    words = [f"{table}, mean over the surfaces", *["the same for a quantile"] * (len(made) - 2), "all curves"]
+    if to == "json":
+        words = ["pressure, area and conductance against the gap"]
     news(*(f"{path}: {what}" for path, what in zip(made, words, strict=True)))

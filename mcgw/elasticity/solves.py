@@ -69,7 +69,7 @@ class Solves:
 
     def _resume(self, path: Path, first: str) -> None:
         if not path.exists():
-            write_whole(path, [first.encode()])
+            write_whole(path, first.encode())
             return
         text = read_bytes(path, _MOST_BYTES).decode("utf-8", errors="replace")
         header, *lines = StringIO(text, newline="\n") if text else [""]
@@ -84,7 +84,7 @@ class Solves:
             else:
                 self._rows[row["level"], row["map"]] = row["values"], row["seconds"]
         if damaged:
-            write_whole(path, ["".join([first, *map(self._line, self._rows)]).encode()])
+            write_whole(path, "".join([first, *map(self._line, self._rows)]).encode())
             shown = ", ".join(damaged[:5]) + (f" and {len(damaged) - 5} more" if len(damaged) > 5 else "")
             warnings.warn(
                 f"{path}: damaged or repeated lines are left out, and solved again where needed: {shown}",

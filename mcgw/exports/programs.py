@@ -62,8 +62,7 @@ class Program:
     # By table that it takes: the line above the rows, empty where there is none; then lines that say how the
     # program includes a ``file``, and what it does beyond the ends.
     tables: dict[str, tuple[str, ...]]
-    first: str = "x"  # which column stands first: "x", the argument, or "y", the value
-    overclosure: bool = False  # gaps are written as overclosures that begin with 0 where the pressure does
+    deck: bool = False  # values stand first, and gaps as overclosures that begin with 0 as the pressure does
     most: int | None = None  # rows
     least_step: float = 0.0  # overclosures nearer than that are moved apart by the program
 
@@ -87,7 +86,7 @@ PROGRAMS = {program.name: program for program in (
                 "third entry: temperature, which has no effect here",
             ),
         },
-        first="y", overclosure=True, most=200, least_step=1e-10,
+        deck=True, most=200, least_step=1e-10,
     ),
     # Abaqus Keywords Guide, *SURFACE BEHAVIOR and *GAP CONDUCTANCE.
     Program(
@@ -99,11 +98,9 @@ PROGRAMS = {program.name: program for program in (
             "conductance-pressure": (
                 "*GAP CONDUCTANCE, PRESSURE", _INCLUDED, "beyond the last line the conductance is constant",
             ),
-            "conductance-gap": (
-                "*GAP CONDUCTANCE", _INCLUDED, "beyond the last line nothing is conducted",
-            ),
+            "conductance-gap": ("*GAP CONDUCTANCE", _INCLUDED, "beyond the last line nothing is conducted"),
         },
-        first="y", overclosure=True,
+        deck=True,
     ),
     # MOOSE, PiecewiseTabularBase.C: comments "#", rising x.
     Program(
@@ -139,8 +136,7 @@ class Sheet(NamedTuple):
 
     def unit(self, name: str) -> tuple[float, str]:
         """Return factor from SI and unit of a quantity or argument; of a conductance, for heat or current."""
-        film = self.scene.film
-        current = name == "conductance" and film is not None and not film.thermal
+        current = name == "conductance" and not self.scene.thermal
         return UNITS[self.units]["current" if current else name]
 
     def heading(self, name: str) -> Iterator[str]:
@@ -179,7 +175,7 @@ class Sheet(NamedTuple):
         Both columns are in the units of the file; x rises. What the program has no room for is refused.
         """
         kind, program, lines = self.kind, self.program, [*self.heading(name)]
-        overclosure = program.overclosure and kind.quantity == "pressure"
+        overclosure = program.deck and kind.quantity == "pressure"
         stays = kind.stays(self.scene)
         if kind.against == "pressure":  # nothing is carried at 0, where a curve that stays keeps its value
             x, y = np.append(0.0, x), np.append(y[0] if stays else 0.0, y)
@@ -206,6 +202,6 @@ class Sheet(NamedTuple):
             )
         lines = [f"{program.comment} {one_line(line)}" for line in lines]
         lines += [header] * bool(header)
-        rows = np.column_stack([x, y] if program.first == "x" else [y, x])
+        rows = np.column_stack([y, x] if program.deck else [x, y])
         lines += [program.separator.join(f"{x:.9e}" for x in row) for row in rows.tolist()]
         return "\n".join([*lines, ""])

@@ -129,7 +129,7 @@ def export(
         digest = f"scene {sha256(scene_text(scene).encode()).hexdigest()}"
     if to == "json":
         text = json.dumps(_contact_table(source, wanted, points, digest), indent=1, allow_nan=False)
-        write_whole(Path(path), [text.encode()])
+        write_whole(Path(path), text.encode())
         return [Path(path)]
     if kind.quantity == "conductance" and scene.film is None:
         raise ValueError(
@@ -153,7 +153,7 @@ def export(
         for file, (name, y) in zip(files, columns.items(), strict=False):
             some = carried & (y > 0)  # a quantile may carry nothing where the mean does
             text = sheet.text(name, per_x * x[some], per_y * y[some], file.name)
-            write_whole(file, [text.encode("ascii", "replace")])
+            write_whole(file, text.encode("ascii", "replace"))
             values = np.where(some, (per_y * y).astype(object), "")[carried].tolist()
             every.append(Column(f"{kind.quantity} {name}", values, unit=unit_y))
         Table(tuple(every)).write(files[-1], comment=f"{kind.name}; SHA-256 of the {digest}")
@@ -176,13 +176,8 @@ def _contact_table(source: Scene | Ensemble, pressures: Any, points: int, digest
     ensemble = surfaces_for(source, needs, pressures, points)
     scene, order = ensemble.scene, np.argsort(ensemble.separations)
     order = order[ensemble.mean("pressure")[order] > 0]
-    pressure = ensemble.mean("pressure")[order]
-    if len(order) < 2:
-        raise ValueError("a contact table needs two separations or more that carry a load")
-    if np.any(np.diff(pressure) >= 0):
-        raise ValueError(
-            "the mean pressure does not fall as the gap rises; give more surfaces, or fewer rows"
-        )
+    gap, pressure = ensemble.separations[order] * scene.surface.sigma, ensemble.mean("pressure")[order]
+    check_monotone(KINDS["pressure-gap"], gap, {"mean": pressure})
     conductance = covariance = None
     if conducts:
         conductance = ensemble.mean(KINDS["conductance-gap"].answer(scene))[order].tolist()
@@ -191,7 +186,7 @@ def _contact_table(source: Scene | Ensemble, pressures: Any, points: int, digest
     return {
         "format": "mcgw-contact-table-1",
         "units": {"gap": "m", "pressure": "Pa", "area": "1", "conductance": "per nominal area"},
-        "gap": (ensemble.separations[order] * scene.surface.sigma).tolist(),
+        "gap": gap.tolist(),
         "pressure": pressure.tolist(),
         "area": ensemble.mean("area_fraction")[order].tolist(),
         "conductance": conductance,
@@ -264,14 +259,13 @@ def at_pressures(
     scene: Scene, kind: Kind, pressures: Array | None, points: int, shares: tuple[float, ...]
 ) -> Curves:
     """Return mean and quantiles over specimens that all carry the same load: those of `mcgw.solve`."""
-    if pressures is None:
-        pressures = pressures_of(scene, points)
+    x = pressures_of(scene, points) if pressures is None else pressures
     area, name = scene.surface.nominal_area, kind.answer(scene)
-    solved = solutions(scene, "load", (area * pressures).tolist())
+    solved = solutions(scene, "load", (area * x).tolist())
+    per = area if kind.quantity == "stiffness" else 1.0
     values = [np.array([each.value[name] for each in solved])]
     values += [np.array([np.quantile(each.surfaces[name], share) for each in solved]) for share in shares]
-    per = area if kind.quantity == "stiffness" else 1.0
-    return pressures, [each / per for each in values]
+    return x, [each / per for each in values]
 
 
 def check_monotone(kind: Kind, x: Array, columns: dict[str, Array]) -> None:
@@ -288,7 +282,7 @@ def check_monotone(kind: Kind, x: Array, columns: dict[str, Array]) -> None:
             worst = at[int(np.argmin(steps))]
             raise ValueError(
                 f"{kind.name}, {name}: is not monotone at {kind.against} = {worst:.4g}, as programs require; "
-                "give fewer points, or a contact law without jumps"
+                "give more surfaces, fewer points, or a contact law without jumps"
             )
 
 

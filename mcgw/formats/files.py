@@ -11,9 +11,10 @@ import secrets
 import socket
 import stat
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
@@ -144,15 +145,11 @@ def _rename(temporary: Path, path: Path, expected: Expected) -> None:
     return os.replace(temporary, path)
 
 
-def write_whole(path: Path, pieces: Iterable[bytes], *, expected: Expected = "anything") -> None:
-    """Write a file of these contents by `whole_file`."""
-    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
-    with (
-        whole_file(path, expected=expected) as temporary,
-        os.fdopen(os.open(temporary, flags, 0o644), "wb") as file,
-    ):
-        for piece in pieces:
-            file.write(piece)
+def write_whole(path: Path, contents: bytes, *, expected: Expected = "anything") -> None:
+    """Write a file by `whole_file`; everybody may read it, its owner alone may write."""
+    mine = partial(os.open, mode=0o644)
+    with whole_file(path, expected=expected) as temporary, open(temporary, "xb", opener=mine) as file:
+        file.write(contents)
 
 
 def sync(path: Path) -> None:

@@ -8,6 +8,7 @@ arrays pass `mcgw.formats.named_files`: regular files of bounded size, with boun
 
 import math
 import zipfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ MOST_CHUNK = 2**26  # bytes of a chunk that is larger than its data
 MOST_OBJECTS, DEEPEST = 4096, 32  # groups, datasets and types of a file; groups within groups
 MOST_MEMBERS = 1000  # of an archive
 _UNPACKED, _RATIO = 2**26, 200  # bytes that any archive may unpack to; and for each byte of it
+_DESCRIPTION = 2**26  # bytes of a member that describes the others
 # Deflate, shuffle, fletcher32, szip, nbit and scale-offset; any other is code that HDF5 loads from a folder.
 _FILTERS = {*range(1, 7), h5py.h5z.FILTER_LZF}
 
@@ -49,16 +51,13 @@ def open_h5(path: Path | str) -> h5py.File:
 
 
 def opened(path: Path | str) -> h5py.File:
-    """Open an HDF5 file for reading without a look at it; for files that are checked otherwise.
-
-    Without a lock where a disk keeps none: files are whole when they get their names.
-    """
+    """Open an HDF5 file for reading without a look at it; for files that are checked otherwise."""
     try:
         return h5py.File(path, "r")
     except OSError as error:
         if "unable to lock" not in str(error):
             raise
-        return h5py.File(path, "r", locking=False)
+        return h5py.File(path, "r", locking=False)  # files are whole when they get their names
 
 
 def _check(file: h5py.File, size: int) -> None:
@@ -112,36 +111,30 @@ def check_archive(path: Path) -> None:
     Python's `zipfile` never unpacks more of a member than its directory declares, which is summed here. What
     is damaged, has too many members, or one that is encrypted or not packed by deflate, is refused, too.
     """
-    size = path.stat().st_size
     try:
         with zipfile.ZipFile(path) as archive:
-            members = archive.infolist()
-            if len(members) > MOST_MEMBERS:
-                raise ValueError(
-                    f"{path}: an archive of {len(members)} members; at most {MOST_MEMBERS} are read"
-                )
-            unpacked = sum(member.file_size for member in members)
-            most = min(max(_UNPACKED, _RATIO * size), max(_UNPACKED, memory_available()))
-            if unpacked > most:
-                raise ValueError(
-                    f"{path}: an archive of {size} bytes that unpacks to {unpacked}; that is refused"
-                )
-            for member in members:
-                if fault := _fault(archive, member):
-                    raise ValueError(f"{path}: {member.filename[:80]!r} {fault}")
+            fault = next(_faults(archive, path.stat().st_size), "")
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, OSError) as error:
-        raise ValueError(f"{path}: is a damaged zip archive: {str(error)[:80]}") from None
+        fault = f"is a damaged zip archive: {str(error)[:80]}"
+    if fault:
+        raise ValueError(f"{path}: {fault}")
 
 
-def _fault(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> str:
-    """Say why a member is refused, if it is: entities make gigabytes of a line, and name other files."""
-    if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED) or member.flag_bits & 1:
-        return "is encrypted, or not packed by deflate"
-    if not member.filename.lower().endswith(".xml"):
-        return ""
-    if member.file_size > 2**26:  # bytes of a description
-        return f"is a description of {member.file_size} bytes"
-    text = archive.read(member)
-    if b"<!DOCTYPE" in text or b"<!ENTITY" in text or b"\0" in text:
-        return "declares entities, or is not UTF-8"
-    return ""
+def _faults(archive: zipfile.ZipFile, size: int) -> Iterator[str]:
+    """Why an archive is refused, if it is: entities make gigabytes of a line, and name other files."""
+    members = archive.infolist()
+    if len(members) > MOST_MEMBERS:
+        yield f"an archive of {len(members)} members; at most {MOST_MEMBERS} are read"
+    unpacked = sum(member.file_size for member in members)
+    if unpacked > max(_UNPACKED, min(_RATIO * size, memory_available())):
+        yield f"an archive of {size} bytes that unpacks to {unpacked}; that is refused"
+    for member in members:
+        name = repr(member.filename[:80])
+        if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED) or member.flag_bits & 1:
+            yield f"{name} is encrypted, or not packed by deflate"
+        if member.filename.lower().endswith(".xml"):
+            if member.file_size > _DESCRIPTION:
+                yield f"{name} is a description of {member.file_size} bytes"
+            text = archive.read(member)
+            if b"<!DOCTYPE" in text or b"<!ENTITY" in text or b"\0" in text:
+                yield f"{name} declares entities, or is not UTF-8"

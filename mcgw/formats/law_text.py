@@ -12,8 +12,6 @@ _MOST = 4  # longest list that is printed whole
 def law_text(law: Any) -> str:
     """Name of a law with the numbers given for it.
 
-    Examples
-    --------
     >>> from analytic import Exponential
     >>> law_text(Exponential(2.0))
     'Exponential(gamma=2.0)'

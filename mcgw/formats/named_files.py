@@ -10,12 +10,12 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from tokenize import TokenError
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from mcgw.errors import StoreError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 HDF5 = b"\x89HDF\r\n"  # how such a file begins
 _UNSOUND = (EOFError, KeyError, MemoryError, OverflowError, SyntaxError, TokenError, TypeError, ValueError)
@@ -57,22 +57,18 @@ def read_text(path: Path, most: int) -> str:
         raise StoreError(f"{path}: is not text in UTF-8 (byte {error.start})") from None
 
 
-def open_npy(path: Path) -> "NDArray[Any]":
+def open_npy(path: Path) -> NDArray[Any]:
     """Map integers or floats of any shape into memory, read-only; nothing is allocated or unpickled.
 
     A file that is damaged or holds anything else is a ValueError.
     """
-    import numpy as np  # the child that looks at files with little memory does without
-
+    os.close(open_regular(path))
     try:
-        os.close(open_regular(path))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # a header in the style of Python 2 is as good
             array = np.lib.format.open_memmap(path, mode="r")
         if array.dtype.kind not in "fiu":
             raise ValueError("its values are not real numbers")
-    except StoreError:
-        raise
     except _UNSOUND as error:
         reason = (str(error).splitlines() or ["damaged"])[0]
         raise ValueError(f"{path}: is not a valid .npy file: {reason}") from None

@@ -64,8 +64,6 @@ class Column:
 class Table:
     """Columns of one length under a title and facts, each a name and a text.
 
-    Examples
-    --------
     >>> Table((Column("h", [0.0, 1.0], SEPARATION, form="g"), Column("load", [77.8, 13.5], unit="N")))
       d/sigma  load (N)
       0            77.8
@@ -217,8 +215,6 @@ def joined(tables: Sequence[Table]) -> Table:
 def typeset(text: str) -> str:
     """Typeset plain text of a terminal: 1e-05, d/sigma, m^2, +-, ... and minus signs.
 
-    Examples
-    --------
     >>> typeset("d/sigma = -1.5 +- 2e-05 m^2")
     'd/σ = −1.5 ± 2×10⁻⁵ m²'
     """
@@ -236,8 +232,6 @@ def digits_of(x: float, error: float) -> int:
 def with_error(x: float, error: float) -> str:
     """Return a number with its standard error, both to the second digit of that.
 
-    Examples
-    --------
     >>> with_error(79.638, 2.95), with_error(1.2874e-10, 2.1e-12), with_error(3.0, float("nan"))
     ('79.6 +- 3', '1.287e-10 +- 2.1e-12', '3')
     """

@@ -75,8 +75,6 @@ def parse(text: str, unit: str, name: str = "") -> float:
     Squares and reciprocals are ``mm^2``, ``mm²``, ``1/mm^2`` or ``mm^-2``; "1" is a fraction, which may be in
     %. Anything else is a ValueError, which begins with the name of the option or key.
 
-    Examples
-    --------
     >>> parse("1.37 um", "m"), parse("300/mm^2", "1/m^2"), parse("2 %", "1")
     (1.37e-06, 300000000.0, 0.02)
     """

@@ -33,10 +33,8 @@ def njit(**options: Any) -> Callable[[Any], Any]:
 
     All loops let go of Python's lock and divide as NumPy does.
     """
-    kept = bool(options.get("cache") and loops_folder())
-    decorator: Callable[[Any], Any] = numba.njit(
-        **{"nogil": True, "error_model": "numpy", **options, "cache": kept}
-    )
+    options["cache"] = bool(options.get("cache") and loops_folder())
+    decorator: Callable[[Any], Any] = numba.njit(**{"nogil": True, "error_model": "numpy", **options})
     return decorator
 
 

@@ -1,5 +1,6 @@
 """Available memory, checked before anything is computed; results kept for calls with the same arguments."""
 
+import re
 from collections.abc import Callable
 from contextlib import suppress
 from functools import lru_cache, wraps
@@ -9,15 +10,12 @@ from typing import Any, TypeVar
 from mcgw.errors import StoreError
 
 _Result = TypeVar("_Result")
-_MOST = 2**63 - 1
 
 
 def check_memory(what: str, size: int) -> None:
     """Refuse work that needs more memory than there is."""
-    if size < 2**24:  # bytes; looking up what is available takes half a millisecond
-        return
-    memory = memory_available()
-    if size > memory:
+    # Bytes: looking up what is available takes half a millisecond.
+    if size >= 2**24 and size > (memory := memory_available()):
         raise StoreError(
             f"{what} needs {gibibytes(size)} of memory but only {gibibytes(memory)} is available; reduce the "
             "request"
@@ -26,9 +24,8 @@ def check_memory(what: str, size: int) -> None:
 
 def memory_available() -> int:
     """Bytes that this process may still use: of the machine, its control group and `ulimit -v`."""
-    limits = [_number(line.split()[1]) * 1024 for line in _lines("/proc/meminfo") if "MemAvailable" in line]
-    used = [_number(line) for line in _lines("/sys/fs/cgroup/memory.current")]
-    most = [_number(line) for line in _lines("/sys/fs/cgroup/memory.max") if line.strip() != "max"]
+    limits = [1024 * free for free in _numbers("/proc/meminfo", "MemAvailable")]
+    used, most = _numbers("/sys/fs/cgroup/memory.current"), _numbers("/sys/fs/cgroup/memory.max")
     if used and most:
         limits.append(max(most[0] - used[0], 0))
     with suppress(ImportError):  # not Windows
@@ -36,9 +33,13 @@ def memory_available() -> int:
 
         limit, _ = resource.getrlimit(resource.RLIMIT_AS)
         if limit != resource.RLIM_INFINITY:
-            taken = (_number(line.split()[1]) for line in _lines("/proc/self/status") if "VmSize" in line)
-            limits.append(max(limit - 1024 * sum(taken), 0))
-    return min(limits, default=_MOST)
+            limits.append(max(limit - 1024 * sum(_numbers("/proc/self/status", "VmSize")), 0))
+    return min(limits, default=2**63 - 1)
+
+
+def _numbers(path: str, name: str = "") -> list[int]:
+    """Numbers behind a name in a file of the system; none of "max", nor of a file that is not there."""
+    return [int(found[1]) for line in _lines(path) if (found := re.match(rf"{name}\D*(\d+)", line))]
 
 
 def _lines(path: str) -> list[str]:
@@ -46,10 +47,6 @@ def _lines(path: str) -> list[str]:
         return Path(path).read_text().splitlines()
     except OSError:
         return []
-
-
-def _number(text: str) -> int:
-    return int(text) if text.strip().isdecimal() else _MOST
 
 
 def gibibytes(size: int) -> str:

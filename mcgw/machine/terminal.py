@@ -20,8 +20,6 @@ _SHORT = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 def one_line(text: str) -> str:
     r"""Escape every character that is not printable.
 
-    Examples
-    --------
     >>> one_line("red \x1b[31m\nE*")
     'red \\u001b[31m\\nE*'
     """
@@ -64,9 +62,7 @@ class Plain:
 
     def write(self, text: str) -> int:
         """Write a text, escaping what is not printable."""
-        shown = "".join(
-            line if line in self._ends else one_line(line) for line in re.split(f"([{self._ends}])", text)
-        )
+        shown = re.sub(f"[^{self._ends}]+", lambda line: one_line(line[0]), text)
         with self._unfailing():
             self._stream.write(shown)
         return len(text)

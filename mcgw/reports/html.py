@@ -30,7 +30,6 @@ from mcgw.statistics.comparison import compare
 _PROVENANCE = ("digest", "seed", "sampler", "date", "versions", "commit", "cpu")
 _FEW_HEIGHTS, _FEWEST = 3e6, 20  # drawn at once for all pressures of a page, where they are drawn
 _PRESSURES = 7  # of the table and of the curves, at most
-_OF_JOINT = ("gap_conductance", "joint_conductance")
 _LIST = re.compile(r"\[\n([^\]]*)\]")  # of the scene as TOML, each shown on one line
 
 
@@ -179,17 +178,14 @@ def _asked(scene: Scene) -> Iterator[tuple[str, float, str, str]]:
     conducted = scene.quantity("contact_conductance").unit.replace("^2", "²")
     yield "separation", 1.0, "Load: pressure at a separation", "separation d/σ"
     if "area" in asked:
-        yield "area", 100 / area, "Real contact area", _per_area("area", "%")
+        yield "area", 100 / area, "Real contact area", "A/Aₙ (%)"
     if "stiffness" in asked:
-        yield "stiffness", 1e-12 / area, "Normal stiffness", _per_area("stiffness", "MPa/µm")
+        yield "stiffness", 1e-12 / area, "Normal stiffness", "K/Aₙ (MPa/µm)"
     if "conductance_si" in asked:
-        yield "contact_conductance", 1.0, "Contact conductance", _per_area("conductance_si", conducted)
+        yield "contact_conductance", 1.0, "Contact conductance", f"C/Aₙ ({conducted})"
     elif "conductance" in asked:
-        yield "conductance", 1 / area, "Contact conductance times ρ", _per_area("conductance", "1/m")
-    for name in (each for each in scene.of_joint if each in _OF_JOINT):
-        title = name.replace("_", " ").capitalize()
-        yield name, 1.0, title, f"{quantity_of(name).symbol} ({conducted})"
-
-
-def _per_area(name: str, unit: str) -> str:
-    return f"{quantity_of(name).symbol}/Aₙ ({unit})"
+        yield "conductance", 1 / area, "Contact conductance times ρ", "Cρ/Aₙ (1/m)"
+    if "gap_conductance" in scene.of_joint:
+        yield "gap_conductance", 1.0, "Gap conductance", f"h_g ({conducted})"
+    if "joint_conductance" in scene.of_joint:
+        yield "joint_conductance", 1.0, "Joint conductance", f"h_j ({conducted})"

@@ -43,8 +43,8 @@ def solutions_text(
 
     With `scatter` also how many asperities it takes; `full` adds every quantity and the sources of error.
     """
-    lines = [_brief(x) for x in (solutions if len(solutions) <= 2 else (solutions[0], solutions[-1]))]
-    lines.append(elastic_verdict(solutions))
+    ends = solutions if len(solutions) <= 2 else (solutions[0], solutions[-1])
+    lines = [*map(_brief, ends), elastic_verdict(solutions)]
     one = len(solutions) == 1
     if not full:
         lines.append(f"{solutions[0].budget().brief}; more: add -v")
@@ -89,13 +89,13 @@ def by_load(scene: Scene, solutions: Sequence[Solution]) -> Table:
     """Means of specimens with their 95 % errors where known, a row for each given value."""
     if scene.film is not None:
         return conductances(scene, solutions)
-    area, budgets = scene.surface.nominal_area, [each.budget() for each in solutions]
-    if solutions[0].given == "load":
-        given = Column("pressure", [x.amount / area / 1e6 for x in solutions], unit="MPa", form=".4g")
-    elif solutions[0].given == "nominal_separation":
-        given = Column("nominal_separation", [x.amount for x in solutions], "nominal d/sigma", form=".4g")
-    else:
-        given = Column("area_fraction", [x.amount / area for x in solutions], "A/A_n", form=".4g")
+    budgets, amounts = [each.budget() for each in solutions], np.array([each.amount for each in solutions])
+    per_area = amounts / scene.surface.nominal_area
+    given = {
+        "load": Column("pressure", per_area / 1e6, unit="MPa", form=".4g"),
+        "nominal_separation": Column("nominal_separation", amounts, "nominal d/sigma", form=".4g"),
+        "area": Column("area_fraction", per_area, "A/A_n", form=".4g"),
+    }[solutions[0].given]
     h = Column("separation", [x.value["separation"] for x in solutions], SEPARATION, form=".3f")
     columns = [given, h]
     for k, name in enumerate(budgets[0].quantities):
@@ -167,32 +167,27 @@ def correlation(scene: Scene, pressure: Array) -> Array | None:
     beside an elastic one: see `analytic.cooper_mikic_yovanovich` and `analytic.mikic_elastic`. None without
     moments or hardness, and with a film or layer.
     """
-    film, moments = scene.film, scene.moments
+    film, moments, hardness = scene.film, scene.moments, getattr(scene.law, "hardness", None)
     if moments is None or film is None or film.film_resistance or film.layer is not None:
         return None
-    rms, slope, k = moments.m0**0.5, mean_absolute_slope(moments.m2), 2 / film.rho
+    spots: Any = {"rms": moments.m0**0.5, "slope": mean_absolute_slope(moments.m2)}
+    spots["conductivity"] = 2 / film.rho
     if scene.law.elastic:
-        e = scene.surface.E_star
-        return mikic_elastic(pressure, E_star=e, rms=rms, slope=slope, conductivity=k)
-    hardness = getattr(scene.law, "hardness", None)
-    if hardness is None:
-        return None
-    return cooper_mikic_yovanovich(pressure, hardness=hardness, rms=rms, slope=slope, conductivity=k)
+        return mikic_elastic(pressure, E_star=scene.surface.E_star, **spots)
+    return None if hardness is None else cooper_mikic_yovanovich(pressure, hardness=hardness, **spots)
 
 
 def solutions_table(scene: Scene, solutions: Sequence[Solution]) -> Table:
     """All of them under each other, each row with what was given (SI; d/sigma) and the mean pressure."""
-    tables = []
-    for solution in solutions:
-        table = solution.table()
-        pressure = solution.value["load"] / scene.surface.nominal_area
-        columns = (
-            Column("given", [solution.given] * len(table)),
-            Column("amount", [solution.amount] * len(table)),
-            Column("pressure", [pressure] * len(table), unit="Pa"),
-        )
-        tables.append(Table((*columns, *table.columns)))
-    return joined(tables)
+    tables = [solution.table() for solution in solutions]
+    rows = [len(table) for table in tables]
+    loads = np.array([x.value["load"] for x in solutions])
+    given = (
+        Column("given", np.repeat([x.given for x in solutions], rows)),
+        Column("amount", np.repeat([x.amount for x in solutions], rows)),
+        Column("pressure", np.repeat(loads / scene.surface.nominal_area, rows), unit="Pa"),
+    )
+    return Table((*given, *joined(tables).columns))
 
 
 def summary(result: "Ensemble | Sweep", attributes: dict[str, Any], full: bool = True) -> str:

@@ -58,7 +58,7 @@ def locked(folder: Path, *, shared: bool = False, patience: float | None = None)
                 (folder / _HOLDER).unlink(missing_ok=True)
             else:
                 text = f"pid {os.getpid()} on {socket.gethostname()}\n"
-                write_whole(folder / _HOLDER, (text.encode(),))
+                write_whole(folder / _HOLDER, text.encode())
         try:
             yield new
         finally:

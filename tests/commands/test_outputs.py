@@ -145,9 +145,9 @@ def test_a_name_taken_meanwhile_is_left_alone(tmp_path, links, monkeypatch):
 
     if not links:
         monkeypatch.setattr(os, "link", none)
-    write_whole(tmp_path / "a", [b"x"], expected=None)
+    write_whole(tmp_path / "a", b"x", expected=None)
     with pytest.raises(FileExistsError, match=r"another file|exists"):
-        write_whole(tmp_path / "a", [b"y"], expected=None)
+        write_whole(tmp_path / "a", b"y", expected=None)
     assert [p.name for p in tmp_path.iterdir()] == ["a"]
     assert (tmp_path / "a").read_bytes() == b"x"
 

@@ -227,8 +227,8 @@ def test_what_has_no_table_is_told(scene, ensemble, tmp_path):
         (scene.replace(separations=[8, 9]), stiffness, r"^contact\.separations: give two or more at which a"),
         (scene.replace(n_surfaces=1), stiffness, r"^n_surfaces = 1: an interval needs at least 2 surfaces$"),
         (3.0, {}, "^float: give a scene, an ensemble, or the file of an ensemble$"),
-        (alone, {"to": "json"}, "two separations or more"),
-        (apart, {"to": "json"}, "two separations or more"),
+        (alone, {"to": "json"}, r"mean: 1 point\(s\) with load"),
+        (apart, {"to": "json"}, r"mean: 1 point\(s\) with load"),
         (
             scene,
             {"table": "gap-pressure"},

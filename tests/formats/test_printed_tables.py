@@ -81,7 +81,7 @@ def test_a_file_is_on_the_disk_before_its_name(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "fsync", noted)
     before = os.umask(0)
     try:
-        write_whole(tmp_path / "a", [b"one", b"two"])
+        write_whole(tmp_path / "a", b"onetwo")
     finally:
         os.umask(before)
     made = (tmp_path / "a").stat()
@@ -94,7 +94,7 @@ def test_the_longest_name_can_be_written(tmp_path):
     """Bytes count."""
     longest = tmp_path / ("x" * 196 + ".csv")
     check_output(longest)
-    write_whole(longest, [b"1"])
+    write_whole(longest, b"1")
     for name in ("x" * 197 + ".csv", "é" * 100 + "x", "..", "a\x07.csv"):
         with pytest.raises(Exception, match="is not a valid file name"):
             check_output(tmp_path / name)
