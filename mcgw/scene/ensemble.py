@@ -2,15 +2,14 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
+
+from numpy.random import Generator, SeedSequence
 
 import analytic
 from mcgw.scene.contact import SUMS
 from mcgw.scene.kinds import Either, List, Number, Table, Whole, Word
 from mcgw.scene.section import key
-
-if TYPE_CHECKING:
-    from numpy.random import Generator, SeedSequence
 
 EXACT = 1e-13  # relative error of a value that is right to the last digits
 _MOST_ASPERITIES = 2**53  # counts are exact in double precision up to here
@@ -99,7 +98,7 @@ class Sampling:
     n_surfaces: int | None = key(Whole(1), "10")
     n_asperities: int | None = key(Whole(1), "100")
     count: Literal["fixed", "poisson"] = key(Word(("fixed", "poisson")), '"poisson"', "fixed")
-    seed: "int | Generator | SeedSequence | None" = key(_SEED, "1")
+    seed: int | Generator | SeedSequence | None = key(_SEED, "1")
     sampler: str = key(Word(SAMPLERS), '"cells"', "auto")
     keep: Literal["sums", "statistics"] = key(Word(("sums", "statistics")), '"statistics"', "sums")
     rel_err: float | str | Mapping[str, Any] | None = key(_REL_ERR, "0.01")

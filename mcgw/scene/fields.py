@@ -4,21 +4,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
 import analytic
 from analytic import HeightLaw, MeasuredRadii, RandomCurvature, SpectralMoments, Surface
 from analytic.arrays import Array
-from analytic.joint import rise_of_summits
+from analytic.joint import Gap, rise_of_summits
 from analytic.laws import Branch, ContactLaw, Film, Hertz
 from mcgw.scene.contact import Contact, Joint
 from mcgw.scene.ensemble import Sampling
 from mcgw.scene.measured import Fitted, Uncertainty, moments_of
-
-if TYPE_CHECKING:
-    from analytic.joint import Gap
 
 _BEYOND = 1e-16  # share of heights above those checked for negative moduli
 
@@ -43,7 +40,7 @@ class Flat:
     hardness: float | None = _of("contact.hardness")
     poisson: float | None = _of("contact.poisson")
     film: Film | None = _of("joint.film")
-    gas: "analytic.Joint | None" = _of("joint.filling")
+    gas: analytic.Joint | None = _of("joint.filling")
     n_surfaces: int = _of("ensemble.n_surfaces")
     n_asperities: int = _of("ensemble.n_asperities")
     count: Literal["fixed", "poisson"] = _of("ensemble.count")
@@ -67,7 +64,7 @@ class Fields(Flat):
     heights: HeightLaw
     summits: RandomCurvature | MeasuredRadii | None
     contact: Contact
-    interaction: "analytic.Interaction | None"
+    interaction: analytic.Interaction | None
     joint: Joint
     ensemble: Sampling
     fitted: Fitted | None
@@ -120,7 +117,7 @@ class Fields(Flat):
         return moments_of(self.surface, self.heights, self.fitted)
 
     @cached_property
-    def filled(self) -> "Gap | None":
+    def filled(self) -> Gap | None:
         """Conduction by gas in the gap of the joint; None without one."""
         return None if self.gas is None else self.gas.gap(self.surface, self.heights, self.moments)
 
@@ -193,11 +190,8 @@ class Fields(Flat):
     @property
     def of_joint(self) -> tuple[str, ...]:
         """Conductances of a joint other than those of its spots."""
-        if self.gas is None:
-            return ()
-        return tuple(
-            name for name, q in analytic.JOINT.items() if self.unload_from is not None or not q.unloading
-        )
+        named = {} if self.gas is None else analytic.JOINT
+        return tuple(name for name, q in named.items() if not q.unloading or self.unload_from is not None)
 
     @property
     def answers(self) -> tuple[str, ...]:

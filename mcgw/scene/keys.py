@@ -13,15 +13,11 @@ from mcgw.scene.measured import KNOWN, SUMMITS, Fitted, Uncertainty
 from mcgw.scene.section import Key, rows_of
 
 _MOST = 100_000
-
-
 POISSON = Number(low=-1.0, high=0.5)
 _ANY, _POSITIVE = Number(low=-math.inf), Number()
-_FILE = Plain()
 YOUNG = Number("Pa", infinite=True)
 _RADII = List(_POSITIVE, advice="give a list of finite numbers > 0")
 _LISTED = List(_ANY)
-_SEPARATION = Number(low=-1e6, high=1e6)
 _SEPARATIONS = "give a list of finite numbers d/sigma, or {start = 0.0, stop = 4.0, num = 41}"
 _NUM = Whole(1, _MOST, f"give a whole number >= 1, at most {_MOST}")
 _PLANES = '"body", the undeformed body, or "mean-plane", that of the deformed one'
@@ -34,7 +30,7 @@ _PIECES_EXAMPLE = (
 )
 _ERRORS = Table(rows_of(Uncertainty), KNOWN, Uncertainty)
 BODY = Table((Key("E", YOUNG, required=True), Key("nu", POISSON, default=0.3)), "", analytic.Body)
-_BODY_OF_FILE = Table((Key("file", _FILE, required=True),), "")
+_BODY_OF_FILE = Table((Key("file", Plain(), required=True),), "")
 _GRADING = "mcgw.Exponential(gamma), mcgw.Table(s, ratio), or a function of an array of heights"
 _HEIGHTS = "mcgw.HeightTable.of(heights), or a frozen continuous distribution, scipy.stats.lognorm(0.3)"
 _OWN_LAW = "a law; your own law is mcgw.CustomLaw(load=..., area=..., ...)"
@@ -128,7 +124,7 @@ TABLES: dict[str, Table] = {
 "contact": Table(words="Separations, and what is computed of the contacts.", rows=(
     Key("separations",
         Either((
-            List(_SEPARATION, 1, _MOST, f"{_SEPARATIONS}, at most {_MOST} of them"),
+            List(Number(low=-1e6, high=1e6), 1, _MOST, f"{_SEPARATIONS}, at most {_MOST} of them"),
             Table((Key("start", _ANY, required=True), Key("stop", _ANY, required=True),
                    Key("num", _NUM, required=True)), _SEPARATIONS, evenly),
             Number(low=-1e6, high=1e6, advice=_SEPARATIONS),

@@ -40,8 +40,6 @@ LAWS: dict[str, dict[str, Any]] = {  # by their words in the tables of a scene
     "contact.law": {**by_name, "custom": CustomLaw},
 }
 _LAW_OF_HEIGHTS = ("support", "breaks", "span", "log_ratio", "pdf")
-
-
 _MOST_BYTES, _MOST_OF_MODULI = 2**28, 2**24
 _SUMMITS: list[dict[str, tuple[str, float]]] = [{"height": ("m", 1.0)}, {"radius": ("m", 1.0)}]
 _NAMED = re.compile(r"\s*(\w+)\s*(?:[(\[/ ]\s*([^()\[\]]*?)\s*[)\]]?)?\s*")  # z, z (um), z [um], z / um, z um
@@ -158,11 +156,7 @@ def listed_summits(section: Section, folder: Path) -> Listed | None:
     """
 
     def listed(
-        file: str | None = None,
-        heights: Any = None,
-        radii: Any = None,
-        ratios: Any = None,
-        resample: bool = False,
+        file: Any = None, heights: Any = None, radii: Any = None, ratios: Any = None, resample: bool = False
     ) -> Listed:
         own = (heights, ratios if radii is None else radii)
         given = own if file is None else _columns(folder / file, _MOST_BYTES, *_SUMMITS)

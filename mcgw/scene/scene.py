@@ -11,10 +11,13 @@ from copy import copy
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from numpy.random import Generator, SeedSequence
 from numpy.typing import ArrayLike
 
-from analytic import Grading, Homogeneous, MeasuredRadii, RandomCurvature, Surface, extent, is_data, resolved
+from analytic import Grading, Homogeneous, Interaction, MeasuredRadii, RandomCurvature, Surface
 from analytic.laws import ContactLaw
+from analytic.quadrature import extent
+from analytic.resolution import is_data, resolved
 from mcgw.formats.table import Shown, Table
 from mcgw.scene.contact import Contact, Joint, interaction_mistakes, law_mistakes
 from mcgw.scene.ensemble import Sampling, promise_of
@@ -27,9 +30,6 @@ from mcgw.scene.surface import Spectral, perhaps_other_units, scale_mistakes, wa
 from mcgw.scene.writing import sheet_of
 
 if TYPE_CHECKING:
-    from numpy.random import Generator, SeedSequence
-
-    from analytic import Interaction
     from mcgw.validity.model_error import Validity
 
 _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where rel_err is to decide
@@ -137,8 +137,7 @@ class Scene(Fields, Shown):
             if isinstance(getattr(self, key), LeftOut):  # now, or in the scene that this one was made of
                 vars(self.ensemble)[key] = LeftOut(value)
         _refuse_mistakes(self)
-        if not (self.law.is_data and is_data(self.grading)):
-            in_numbers(self)  # a function that no series resolves is a mistake as well
+        storable(self)  # a function that no series resolves is a mistake as well
         warn_of_units([*perhaps_other_units(self), *self.ensemble.cautions(self)])
 
     def replace(self, **changes: Any) -> Scene:
@@ -247,26 +246,19 @@ def storable(scene: Scene) -> Scene:
     """
     if scene.law.is_data and is_data(scene.grading):
         return scene
-    same = object.__new__(Scene)  # not checked anew, which may take long
-    vars(same).update({x.name: getattr(scene, x.name) for x in dataclasses.fields(scene)} | in_numbers(scene))
-    return same
-
-
-def in_numbers(scene: Scene) -> dict[str, Any]:
-    """Return what of a scene a file does not hold as it is, resolved; raises as `storable`.
-
-    Asperities may have felt lower separations than those asked.
-    """
+    # Asperities may have felt lower separations than those asked.
     low, high = extent(scene.grading, scene.heights, (*scene.separations, scene.lowest))
-    changes: dict[str, Any] = {}
+    parts = {each.name: getattr(scene, each.name) for each in dataclasses.fields(scene)}
     if not scene.law.is_data:
-        changes["contact"] = dataclasses.replace(scene.contact, law=_resolved_law(scene, low, high))
+        parts["contact"] = dataclasses.replace(scene.contact, law=_resolved_law(scene, low, high))
     if not is_data(scene.grading):
         try:
-            changes["grading"] = resolved(scene.grading, low, high)
+            parts["grading"] = resolved(scene.grading, low, high)
         except ValueError as error:
             raise SceneError([str(error)]) from None
-    return changes
+    same = object.__new__(Scene)  # not checked anew, which may take long
+    vars(same).update(parts)
+    return same
 
 
 def _resolved_law(scene: Scene, low: float, high: float) -> ContactLaw:
