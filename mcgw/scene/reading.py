@@ -67,18 +67,17 @@ def _keys_of(name: str, value: Any) -> Values:
         keys = {_OF_WORD[name]: value}
     if not isinstance(keys, Mapping):
         return {name: keys}
-    whole = {key: whole_key(key) for key in keys}
-    inside = {key: place if place.startswith(f"{name}.") else f"{name}.{key}" for key, place in whole.items()}
-    return {name: {}} | {inside[key]: x for key, x in keys.items()}
+    return {name: {}} | {whole_key(key, f"{name}."): x for key, x in keys.items()}
 
 
 def _fields(part: Any) -> Values:
     return {each.name: x for each in fields(part) if (x := getattr(part, each.name)) is not None}
 
 
-def whole_key(key: str) -> str:
-    """Return a key with its table, where it is given without and only one table has it."""
-    return key if key in TABLES else _WHOLE.get(key, key)
+def whole_key(key: str, inside: str = "") -> str:
+    """Return a key with its table: the only one that has it, or the one that it is `inside`."""
+    whole = key if key in TABLES else _WHOLE.get(key, key)
+    return whole if whole.startswith(inside) else f"{inside}{key}"
 
 
 def with_changes(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
