@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from analytic.arrays import Array, Ints
-from analytic.exact_law import SCORES, between, in_cells, scores_of, shares_upto
+from analytic.exact_law import SCORES, in_cells, normal_scores, shares_upto
 from analytic.measured_summits import MeasuredHeights
 from analytic.quadrature import gauss_legendre
 from analytic.quantities import quantity_of
@@ -40,13 +40,7 @@ _GRID, _SPREADS = 4096, 12.0  # points, and standard deviations of the given sum
 
 
 class Moments(NamedTuple):
-    """Means and standard deviations over surfaces, by name.
-
-    Parameters
-    ----------
-    mean, std : dict of str to float
-        "separation" (d/sigma) and sums, SI.
-    """
+    """Means and standard deviations over surfaces, of "separation" (d/sigma) and of sums, SI, by name."""
 
     mean: dict[str, float]
     std: dict[str, float]
@@ -55,29 +49,11 @@ class Moments(NamedTuple):
 def specimen_moments(model: Any, given: str, value: float, names: Sequence[str]) -> Moments:
     """Return means and standard deviations over surfaces that all have the same load, or another sum.
 
-    Parameters
-    ----------
-    model : Model
-        Its asperities independent, under a law of contact that never pulls.
-    given : str
-        The sum that is the same on all surfaces, such as "load".
-    value : float
-        Its value, SI.
-    names : sequence of str
-        Sums to average on loading.
-
-    Returns
-    -------
-    Moments
-        Of "separation" (d/sigma), the given sum and each of `names`, SI. Means are right to 2e-6 mostly, to
-        1e-3 at worst where heights have heavy tails or a law jumps at the load; standard deviations to 5e-4
-        of the mean.
-
-    Raises
-    ------
-    ValueError
-        If the law of the separation is not known (see `Model.separation_law`), or some surfaces have none; if
-        there is one asperity alone; if the given sum is not found again.
+    Of the separation, the given sum and others on loading; asperities are independent and never pull. Means
+    are right to 2e-6 mostly, to 1e-3 at worst where heights have heavy tails or a law jumps at the load;
+    standard deviations to 5e-4 of the mean. It is a ValueError if the law of the separation is not known (see
+    `Model.separation_law`), or some surfaces have none; of one asperity alone; and if the given sum is not
+    found again.
 
     Examples
     --------
@@ -141,12 +117,10 @@ def _integrated(
 
 def _ends(model: Any, given: str, value: float) -> tuple[float, float, float]:
     """Separations between which next to all surfaces have the given sum, and the median."""
-    score, start, spread = scores_of(model, given, value)
-    places = between(score, start, 3 * spread)  # a third as many as a law needs: they place nodes alone
-    scores = np.maximum.accumulate([score(h) for h in places])
+    places, scores = normal_scores(model, given, value, wide=3.0)  # fewer than a law needs: they place nodes
     if scores[0] > -SCORES or scores[-1] < SCORES:  # a Poisson number of asperities may be 0
         raise ValueError(f"{given} = {value:g}: not every surface has a separation with it")
-    low, middle, high = np.interp([-SCORES, 0.0, SCORES], scores, places).tolist()
+    low, middle, high = np.interp([-SCORES, 0.0, SCORES], np.maximum.accumulate(scores), places).tolist()
     return low, middle, high
 
 

@@ -1,17 +1,22 @@
-"""The exact law of a finite surface: of a sum over its asperities, and of the separation, without a draw."""
+"""The exact law of a finite surface: of a sum over its asperities, and of the separation, without a draw.
+
+One asperity adds a value X, the sum S over N of them has the transform ``(1 + q)^N``, or ``exp(N q)`` where
+their number is a Poisson variable, with ``q(z) = E exp(-z X) - 1``. One FFT gives it on a lattice; a positive
+real part of z damps the sums beyond its end (Grübel and Hermesmeier, ASTIN Bulletin 29 (1999) 197).
+Surfaces on which no asperity touches, or one, are counted apart, by the distribution of X itself.
+"""
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import replace
-from functools import cache, partial
+from collections.abc import Sequence
+from functools import cache, cached_property, partial
 from typing import Any
 
 import numpy as np
-from scipy.special import ndtr, ndtri
+from scipy.special import log1p, ndtr, ndtri  # NumPy's log1p loses digits of small complex numbers
 
 from analytic.arrays import Array
 from analytic.curvature import MEAN_CURVATURE
-from analytic.distribution import Counted, Law, OneAsperity, shares, shares_at
+from analytic.distribution import Counted, Law
 from analytic.height_rule import HeightRule
 from analytic.mean_model import LOWEST
 from analytic.measured_summits import MeasuredHeights
@@ -19,14 +24,138 @@ from analytic.quantities import quantity_of
 
 _POINTS = 2**15, 5 * 2**13  # of a lattice, and of another one
 _CELLS = 12_288, 20_480  # of the heights, by the root of the probability, and as many evenly between nodes
+_JUST = 1e-9  # of a cell
+_STENCIL = range(-3, 4)  # lattice points that share a value and keep its moments up to the sixth
+_MARGIN = 16  # lattice points below the lowest sum
+_DAMPED = 20.0  # logarithm of the damping over a period, which is twice as long as what is read
+_LAST_DIGIT = 1e-15  # of the asperities that touch: if fewer are beyond a lattice, damping only takes digits
+_REACH = 9.0  # standard deviations that hold all but 1e-18
+_RARE, _NEVER = 1e-2, 1e-9  # asperities on a surface that add more than usual ones, and that pull more
+_RESOLVED = (
+    1 / 12
+)  # of the standard deviation of usual sums: the longest step of a lattice, unless of surfaces
+_FEW = 1e-25  # or more expected asperities touch alone; they have a lattice narrower than of usual sums, too
+_WIDER = 32.0 ** np.arange(-1, 4)
+_SINGLE = 1e-9  # width of a single value, over itself and the median
+_OWN = 2  # lattice points to one that the distribution of one asperity has of its own
+_ROUNDING = 5e-12  # of a probability of sums, times the root of the number of contacts
 SCORES, _HIGHEST, _APART = 6.0, 6.5, 0.4  # of normal scores: looked for, told, and from one to the next
 _LONGER, _SMALLEST, _TABLE = 1.25, 1e-3, 8192
 _LEVEL = 1e-9  # of a score: all asperities touch, and the rest of the surfaces have none
-_JUST = 1e-9  # of a cell
 _DEGREE = 5  # of a spline through scores
 
 
-def distribution_of(model: Any, quantity: str, h: float, *, other: bool = False) -> Law:
+class OneAsperity:
+    """What one of the asperities of a surface adds: shares of them, each evenly between two values.
+
+    There are so many on a surface, or in the mean if their number is a Poisson variable.
+    """
+
+    def __init__(self, ends: tuple[Array, Array], shares: Array, number: float, poisson: bool) -> None:
+        low, high = np.minimum(*ends), np.maximum(*ends)
+        order = np.argsort(low + high)
+        order = order[(((low != 0) | (high != 0)) & (shares > 0))[order]]
+        self.low, self.high, self.shares = low[order], high[order], shares[order]
+        self.middle = (self.low + self.high) / 2
+        self.number, self.poisson = number, poisson
+        self.touching = min(float(self.shares.sum()), 1.0)
+        self.none = math.exp(-number * self.touching) if poisson else (1 - self.touching) ** number
+        others = self.none if poisson else (1 - self.touching) ** (number - 1)
+        self.alone = number * others  # asperities that touch alone on their surface, over the share
+
+    @cached_property
+    def distribution(self) -> tuple[Array, Array]:
+        """Values, and the share of asperities that touch and add no more: linear in between."""
+        median = np.interp(self.touching / 2, np.cumsum(self.shares), np.abs(self.middle))
+        width = np.maximum(self.high - self.low, _SINGLE * (median + np.abs(self.high)))
+        density, places = self.shares / width, np.concatenate([self.high - width, self.high])
+        order = np.argsort(places)
+        slopes = np.cumsum(np.concatenate([density, -density])[order], dtype=np.longdouble)[:-1]
+        places = places[order]
+        return places, np.append(0.0, np.cumsum(slopes * np.diff(places))).astype(np.float64)
+
+    @cached_property
+    def span(self) -> tuple[float, float, float]:
+        """Lowest sum, highest one of surfaces without rare large values, longest step of a lattice."""
+        x, p, n = self.middle, self.shares, self.number
+        rarer = n * np.cumsum(p[::-1])[::-1]
+        usual, pull = np.where(rarer > min(_RARE, rarer[0] / 2), x, 0.0), np.minimum(x, 0.0)
+        means, squares = ((p * np.stack([usual, pull]) ** k).sum(axis=1) for k in (1, 2))
+        spread = np.sqrt(n * np.maximum(squares - (0.0 if self.poisson else means**2), 0.0))
+        deepest = pull[min(int(np.searchsorted(n * np.cumsum(p), _NEVER)), x.size - 1)]
+        low = (n * means - _REACH * spread).max() + 2 * deepest
+        high = n * means[0] + _REACH * spread[0] + max(usual.max(), 0.0)
+        return float(low), float(high), np.inf if self.alone > _FEW else _RESOLVED * float(spread[0])
+
+    def upto(self, x: Array, end: float, points: int) -> Array:
+        """Return the shares of surfaces in contact with sums up to x, by a lattice that ends there or beyond.
+
+        Values beyond its end are left out: no sum that is read has them.
+        """
+        low, size = self.span[0], 2 * points
+        step, k = (end - low) / points, np.arange(size)
+        first = np.floor(low / step) - _MARGIN
+        signed = np.where(k < 3 * points // 2, k, k - size)
+        places = self.middle / step
+        kept = (places < points + 2 * _MARGIN) & (places > -points / 2)
+        near, p, f = np.rint(places[kept]), self.shares[kept], np.zeros(size)
+        lost = float(self.shares[~kept].sum())
+        damping = 0.0 if np.isfinite(self.span[2]) and lost <= _LAST_DIGIT * self.touching else _DAMPED / size
+        off, at = places[kept] - near, near.astype(np.int64)
+        for i in _STENCIL:  # by Lagrange's weights
+            weights = np.prod([(off - j) / (i - j) for j in _STENCIL if j != i], axis=0)
+            f += np.bincount((at + i) % size, p * weights, size)
+        centre = float((f * signed).sum())
+        f[[1, -1]] -= centre / 2, -centre / 2  # apart from what scatters: it takes digits where N is large
+        f[0] = 0.0
+        f[0] = -f.sum() - lost  # so that many small values lose no digits
+        scatter, z = np.fft.rfft(f * np.exp(-damping * signed)), damping + 2j * np.pi / size * k[: points + 1]
+        q = scatter - centre * np.sinh(z)
+        log = q + centre * z - (0.0 if self.poisson else q - log1p(q))
+        spectrum = np.exp(self.number * log + z * (first - self.number * centre))
+        if self.alone:
+            spectrum -= (self.none + self.alone * (q + self.touching)) * np.exp(z * first)
+        read = k[: points + 2 * _MARGIN]
+        p = np.fft.irfft(spectrum, size)[read] * np.exp(damping * read)
+        several = np.interp(x, (first + read) * step, np.cumsum(p) - p / 2, left=0.0)
+        one = np.interp(x, *self.distribution, left=0.0, right=self.touching)
+        return np.asarray(several + self.alone * one)
+
+    def shares_upto(self, x: Array, points: int) -> Array:
+        """Return the shares of all surfaces with sums up to x, by a lattice that ends with the largest x.
+
+        Of many contacts it has usual sums, and ends where it would not resolve them: shares are then a bound.
+        """
+        if not self.low.size or x.max() <= self.span[0]:
+            return np.where((x >= 0) & (x >= (self.span[0] if self.low.size else 0.0)), 1.0, 0.0)
+        low, usual, step = self.span
+        high = float(np.clip(x.max(), low if np.isinf(step) else usual, max(usual, low + points * step)))
+        return self.upto(x, high, points) + self.none * (x >= 0)
+
+    def table(self, points: int) -> tuple[Array, Array]:
+        """Return sums and shares of surfaces up to them, by ever wider lattices; a jump is a sum twice."""
+        if not self.low.size:
+            return np.zeros(2), np.array([0.0, 1.0])
+        rounding = _ROUNDING * max(math.sqrt(self.number * self.touching), 1.0)
+        own, x, upto, (low, usual, step) = self.distribution[0], np.zeros(0), np.zeros(0), self.span
+        begin, least = low, -low if np.isinf(step) else usual - low
+        for end in [low + w for w in (usual - low) * _WIDER if least <= w <= max(points * step, usual - low)]:
+            new = np.union1d(np.linspace(low, end, points), own[:: max(1, _OWN * own.size // points)])
+            new = np.union1d(new[(new > begin) & (new <= end)], [0.0] if begin <= 0 else [])
+            x, upto, begin = np.append(x, new), np.append(upto, self.upto(new, end, points)), end
+            if upto[-1] > 1 - self.none - rounding:
+                break
+        at, upto = int(np.searchsorted(x, 0.0)), np.maximum.accumulate(upto)
+        if self.low.min() >= 0:  # no rounding beside the surfaces that nothing touches
+            upto[: at + 1] = 0.0
+        x, upto = np.insert(x, at, 0.0), np.insert(upto, at, upto[at])
+        upto[at + 1 :] += self.none
+        upto = np.clip(upto, rounding, 1 - rounding)
+        first, last = np.searchsorted(upto, upto[0], "right"), np.searchsorted(upto, upto[-1])
+        return x[max(first - 1, 0) : last + 1], upto[max(first - 1, 0) : last + 1]
+
+
+def distribution_of(model: Any, quantity: str, h: float, other: bool = False) -> Law:
     """As `analytic.Model.distribution`, of a model whose asperities are independent."""
     q = quantity_of(quantity)
     if q.counts:
@@ -35,24 +164,34 @@ def distribution_of(model: Any, quantity: str, h: float, *, other: bool = False)
         mean, n = float(model.mean(quantity, h)), model.number
         return Counted(poisson(mean) if model.count == "poisson" else binom(round(n), mean / n))
     one, unit = one_asperity(model, quantity, h, _CELLS[other]), q.scale(model.surface)
-    x, upto = shares(one, _POINTS[other])
-    lowest = -np.inf if one.low.min(initial=0) < 0 else 0.0
-    again = partial(distribution_of, model, quantity, h, other=True)
+    x, upto = one.table(_POINTS[other])
+    ends = (-np.inf if one.low.min(initial=0) < 0 else 0.0, np.inf)
     known = model.cumulants(quantity, h)
-    return Law(unit * x, upto, (lowest, np.inf), again, (float(known.mean), float(known.variance)))
+    moments = float(known.mean), float(known.variance)
+    return Law(unit * x, upto, ends, partial(distribution_of, model, quantity, h, other=True), moments)
 
 
-def one_asperity(model: Any, quantity: str, h: float, cells: int) -> OneAsperity:
+def shares_upto(
+    model: Any, quantity: str, h: float, number: float, values: Array, *, other: bool = False
+) -> Array:
+    """Return the shares of surfaces of a number of asperities whose sum is no more than some values, SI.
+
+    They are right to 1e-6 or better. For what is integrated over: one lattice that suits the largest of
+    them, without the far tails of a `Law`.
+    """
+    if number < 1:
+        return np.where(values >= 0, 1.0, 0.0)
+    one = one_asperity(model, quantity, h, _CELLS[other] // 4, number)
+    return one.shares_upto(values / quantity_of(quantity).scale(model.surface), _POINTS[other] // 8)
+
+
+def one_asperity(model: Any, quantity: str, h: float, cells: int, number: float | None = None) -> OneAsperity:
     """Return what one asperity adds, over the scale of the quantity, by cells of heights."""
-    lowest = min(h, model.ways.of(quantity).lowest(h))
-    rule = model.rule([h], [quantity])
+    rule, lowest = model.rule([h], [quantity]), min(h, model.ways.of(quantity).lowest(h))
     at_nodes = rule.terms([quantity], [h], model.grading, model.ways)
-    low, high, p = in_cells(model, [quantity], h, rule, at_nodes, cells, lowest)
-    low, high = low[:, 0], high[:, 0]
-    touching = ((low != 0) | (high != 0)) & (p > 0)
-    low, high, p = (x[touching] for x in (np.minimum(low, high), np.maximum(low, high), p))
-    order = np.argsort(low + high)
-    return OneAsperity(low[order], high[order], p[order], model.number, model.count == "poisson")
+    low, high, shares = in_cells(model, [quantity], h, rule, at_nodes, cells, lowest)
+    number = model.number if number is None else number
+    return OneAsperity((low[:, 0], high[:, 0]), shares, number, model.count == "poisson")
 
 
 def in_cells(
@@ -60,46 +199,35 @@ def in_cells(
 ) -> tuple[Array, Array, Array]:
     """Return what asperities add at both ends of cells between the nodes of a rule, and probabilities.
 
-    Over scales, shape (cells, quantities). Listed heights are cells of no width; others keep the means.
+    Over scales, shape (cells, quantities). Listed heights are cells of no width; others keep the means. Cells
+    are finer where more asperities are; the first begins at the lowest height.
     """
-    p = rule.probabilities
+    p, ratios = rule.probabilities, rule.ratios
     if not p.any() or isinstance(model.heights, MeasuredHeights):
         return at_nodes, at_nodes, p
-    left, wide, own, ratios = _cells_between(model, rule, cells, max(lowest, model.heights.support[0]))
+    order = np.arange(p.size) if ratios is None else np.lexsort((rule.heights, -ratios))  # radius by radius
+    s, root = rule.heights[order], np.sqrt(p[order])
+    radius = np.zeros(p.size) if ratios is None else ratios[order]
+    parts = np.ceil(cells * (root / root.sum() + 1 / root.size)).astype(np.int64)
+    first = np.append(True, np.diff(radius) != 0)  # height of a radius
+    start = np.where(first, max(lowest, model.heights.support[0]), np.append(0.0, s[:-1]))
+    wide = np.repeat((s - start) / parts, parts)
+    left = (
+        np.repeat(start, parts) + (np.arange(wide.size) - np.repeat(np.cumsum(parts) - parts, parts)) * wide
+    )
+    middle, which, radius = left + wide / 2, np.cumsum(first) - 1, np.repeat(radius, parts)
+    if ratios is None:
+        own = wide * model.heights.pdf(middle)
+    else:
+        own = wide * model.curvature.density(middle, MEAN_CURVATURE / radius)
+    whole, which = np.bincount(which, p[order]), np.repeat(which, parts)  # each radius keeps its share
+    own *= (whole / np.bincount(which, own))[which]
     at = np.concatenate([left + _JUST * wide, left + wide])  # right of where contacts begin
-    nodes = HeightRule(at, 0 * at, rule.below, None if ratios is None else np.tile(ratios, 2))
+    nodes = HeightRule(at, 0 * at, rule.below, None if ratios is None else np.tile(radius, 2))
     low, high = np.split(nodes.terms(several, [h], model.grading, model.ways), 2)
     missing, size = 2 * p @ at_nodes - own @ (low + high), own @ (np.abs(low) + np.abs(high))
     share = missing / np.where(size > 0, size, 1.0)
     return low + share * np.abs(low), high + share * np.abs(high), own
-
-
-def _cells_between(
-    model: Any, rule: Any, cells: int, lowest: float
-) -> tuple[Array, Array, Array, Array | None]:
-    """Return the lower ends of cells between the nodes of a rule, widths, probabilities, and ratios of radii.
-
-    They are finer where more asperities are; the first begins at the lowest height.
-    """
-    s, p, ratios = rule.heights, rule.probabilities, rule.ratios
-    if ratios is not None:  # radius by radius
-        order = np.lexsort((s, -ratios))
-        s, p, ratios = s[order], p[order], ratios[order]
-    root = np.sqrt(p)
-    parts = np.ceil(cells * (root / root.sum() + 1 / root.size)).astype(np.int64)
-    new = np.arange(s.size) == 0 if ratios is None else np.diff(ratios, prepend=np.inf) != 0
-    start = np.where(new, lowest, np.append(lowest, s[:-1]))
-    wide = np.repeat((s - start) / parts, parts)
-    number = np.arange(wide.size) - np.repeat(np.cumsum(parts) - parts, parts)
-    left = np.repeat(start, parts) + number * wide
-    middle, which = left + wide / 2, np.cumsum(new) - 1
-    if ratios is None:
-        own = wide * model.heights.pdf(middle)
-    else:
-        ratios = np.repeat(ratios, parts)
-        own = wide * model.curvature.density(middle, MEAN_CURVATURE / ratios)
-    whole, which = np.bincount(which, p), np.repeat(which, parts)  # each radius keeps its share
-    return left, wide, own * (whole / np.bincount(which, own))[which], ratios
 
 
 def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = False) -> Law:
@@ -111,9 +239,7 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
         raise ValueError(
             f"quantity = {quantity!r}: give a sum that decreases with the separation, such as 'load'"
         )
-    score, start, spread = scores_of(model, quantity, load, other=other)
-    h = between(score, start + other * spread / 7, spread, _APART)
-    z = np.array([score(at) for at in h])
+    h, z = normal_scores(model, quantity, load, apart=_APART, other=other)
     x = np.interp(np.linspace(0, len(h) - 1, _TABLE), np.arange(len(h)), h)
     smooth = np.maximum.accumulate(make_interp_spline(h, z, min(_DEGREE, len(h) - 1))(x))
     x, upto = x[np.abs(smooth) < SCORES], ndtr(smooth[np.abs(smooth) < SCORES])
@@ -121,13 +247,19 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
     return Law(x, upto, (-np.inf, np.inf), again)
 
 
-def scores_of(
-    model: Any, quantity: str, value: float, *, other: bool = False
-) -> tuple[Callable[[float], float], float, float]:
-    """Return the normal score, at a separation, of the share of surfaces whose sum is no more than a value.
+def normal_scores(
+    model: Any,
+    quantity: str,
+    value: float,
+    *,
+    wide: float = 1.0,
+    apart: float = math.inf,
+    other: bool = False,
+) -> tuple[list[float], list[float]]:
+    """Return separations, and normal scores of the shares of surfaces with sums up to a value there.
 
-    And where the mean surface has that value, and how far others lie from there, to first order. Sums that
-    may rise with the separation are a ValueError.
+    From one that next to no surface is below to one that next to none is above, by steps `wide` or narrower:
+    scores are at most so far apart. Sums that may rise with the separation are a ValueError.
     """
     start = float(model.separation_at(quantity, value))
     rule = model.rule([start], [quantity])
@@ -148,17 +280,8 @@ def scores_of(
         share = shares_upto(model, quantity, h, model.number, np.array([value]), other=other)
         return float(np.clip(ndtri(np.clip(share[0], 0.0, 1.0)), -_HIGHEST, _HIGHEST))
 
-    return score, start, float(model.std(quantity, start) / model.slope(quantity, start))
-
-
-def between(
-    score: Callable[[float], float], start: float, spread: float, apart: float = math.inf
-) -> list[float]:
-    """Return separations from one that next to no surface is below to one that next to none is above.
-
-    Their scores are at most so far apart.
-    """
-    places, step, moved = [start], spread / 3, 1.0
+    spread = float(model.std(quantity, start) / model.slope(quantity, start))  # to first order
+    places, step, moved = [start + other * spread / 7], wide * spread / 3, 1.0
     while score(places[-1]) < SCORES:  # far, where tails are heavy
         places.append(places[-1] + step * _LONGER ** len(places))
     while score(places[0]) > -SCORES and moved > _LEVEL and places[0] > LOWEST:
@@ -171,18 +294,4 @@ def between(
             places.insert(k, (left + right) / 2)
         else:
             k += 1
-    return places
-
-
-def shares_upto(
-    model: Any, quantity: str, h: float, number: float, values: Array, *, other: bool = False
-) -> Array:
-    """Return the shares of surfaces of a number of asperities whose sum is no more than some values, SI.
-
-    They are right to 1e-6 or better. For what is integrated over: one lattice that suits the largest of
-    them, without the far tails of a `Law`.
-    """
-    if number < 1:
-        return np.where(values >= 0, 1.0, 0.0)
-    one = replace(one_asperity(model, quantity, h, _CELLS[other] // 4), number=number)
-    return shares_at(one, values / quantity_of(quantity).scale(model.surface), _POINTS[other] // 8)
+    return places, [score(h) for h in places]
