@@ -32,12 +32,6 @@ def _relative(n: float, h: float, grading: Grading, breaks: Array) -> float:
     return float(np.sum(width * weight * approach**n * density * grading(above + beyond)))
 
 
-def _absolute(n: float, h: float, grading: Grading, heights: HeightLaw) -> float:
-    """``int (s-h)^n g density`` over s > h."""
-    rule = HeightRule.over([h], grading, heights, power=1, exponent=n + 1)
-    return float(rule.probabilities @ (grading(rule.heights) * (rule.heights - h) ** n))
-
-
 def quotient(
     h: ArrayLike, above: tuple[float, Grading | None], below: tuple[float, Grading | None], heights: HeightLaw
 ) -> Array:
@@ -57,7 +51,12 @@ def fn_scaled(
         raise ValueError("h: every separation must be finite")
     grading, flat = Homogeneous() if grading is None else grading, h.ravel().tolist()
     if not isinstance(heights, Gaussian) or not flat:
-        return np.reshape([_absolute(n, x, grading, heights) for x in flat], h.shape)
+        rules = [HeightRule.over([x], grading, heights, power=1, exponent=n + 1) for x in flat]
+        values = [
+            a.probabilities @ (grading(a.heights) * (a.heights - x) ** n)
+            for a, x in zip(rules, flat, strict=True)
+        ]
+        return np.reshape(values, h.shape)
     breaks = np.array(resolved_breaks(grading, *ends_of(heights, np.unique(h), grading, power=1)))
     values = [_relative(n, x, grading, breaks) for x in flat]
     unit = np.where(h >= 0, 1.0, 1 / np.sqrt(2 * np.pi))
@@ -114,15 +113,11 @@ def fn(
     -5011.454471272
     """
     h = np.asarray(h, dtype=np.float64)
-    value = fn_scaled(n, h, grading, heights=heights)
-    relative = (h >= 0) & isinstance(heights, Gaussian)
-    above = np.where(relative, h, 0.0)
+    value, scaled = fn_scaled(n, h, grading, heights=heights), (h >= 0) & isinstance(heights, Gaussian)
     if log:
         with np.errstate(divide="ignore", invalid="ignore"):
-            density = np.where(relative, above * above / 2 + np.log(2 * np.pi) / 2, 0.0)
-            return np.asarray(np.log(value) - density)
-    density = np.where(relative, exp_minus_half_square(above) / np.sqrt(2 * np.pi), 1.0)
-    return np.asarray(value * density)
+            return np.log(value) - np.where(scaled, h * h / 2 + np.log(2 * np.pi) / 2, 0.0)
+    return np.asarray(value * np.where(scaled, exp_minus_half_square(h) / np.sqrt(2 * np.pi), 1.0))
 
 
 def fn_paper(n: float, h: ArrayLike, gamma: float, ngp: int) -> Array:

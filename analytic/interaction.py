@@ -98,7 +98,7 @@ class Interaction:
 
     def compliance(self, surface: Surface, n_asperities: float) -> float:
         """Return how far each newton on the surface lowers the plane that the asperities feel, m/N."""
-        modulus = surface.E_star if self.bulk_modulus is None else self.bulk_modulus
+        modulus = self.bulk_modulus or surface.E_star
         if self.reference == "body":
             return BOWL / (modulus * math.sqrt(surface.nominal_area))
         return -LATTICE / (math.pi * modulus * math.sqrt(n_asperities * surface.nominal_area))
@@ -131,8 +131,12 @@ class Interaction:
             return compliance
         if name not in ("conductance", "conductance_si"):
             return 0.0
-        modulus = surface.E_star if self.bulk_modulus is None else self.bulk_modulus
-        return modulus * compliance / 2 * (resistivity if name == "conductance_si" else 1.0)
+        return (
+            (self.bulk_modulus or surface.E_star)
+            * compliance
+            / 2
+            * (resistivity if name == "conductance_si" else 1.0)
+        )
 
     def bodies(self, surface: Surface, resistivity: float) -> float:
         """Return how the bodies as a whole resist the flux through a unit area of the joint, m^2 K/W.
@@ -160,29 +164,15 @@ def _itself(x: Array, order: int = 0) -> Array:
 
 @dataclass(frozen=True)
 class Answer:
-    """How a quantity of a surface follows from a sum S over its spots and its load P.
+    """How a quantity of a surface follows from a sum S over its spots and its load P."""
 
-    Parameters
-    ----------
-    spots : str
-        Name of S; none of it counts if that is empty.
-    load : str
-        Name of P, on the same way.
-    per : float
-        Area that S counts for.
-    series, sunk, bodies : float
-        The constants c, k and b.
-    at_plane : callable, optional
-        g of separations and the order of a derivative.
-    """
-
-    spots: str
-    load: str
-    per: float = 1.0
-    series: float = 0.0
-    sunk: float = 0.0
-    bodies: float = 0.0
-    at_plane: Callable[[Array, int], Array] | None = None
+    spots: str  # name of S; none of it counts if that is empty
+    load: str  # name of P, on the same way
+    per: float = 1.0  # area that S counts for
+    series: float = 0.0  # c
+    sunk: float = 0.0  # k
+    bodies: float = 0.0  # b
+    at_plane: Callable[[Array, int], Array] | None = None  # g of separations and the order of a derivative
 
     def mean(self, model: Any, h: Array, found: tuple[Array, Array, Array] | None = None) -> Array:
         """Mean over surfaces, to second order; `found` if there is what `at_means` gives."""
@@ -211,17 +201,15 @@ class Answer:
 
     def law(self, model: Any, h: float) -> "Law":
         """Return the distribution over surfaces, of what follows from S or P alone."""
+        law: Law = model.distribution(self.spots or self.load, h)
         if not self.spots:
-            law: Law = model.distribution(self.load, h)
             return law.mapped(lambda p: h - self.sunk * p, falls=self.sunk > 0)
-        law = model.distribution(self.spots, h)
-        gas = 0.0 if self.at_plane is None else float(self.at_plane(np.asarray(h), 0))
+        gas = self.at_plane(np.asarray(h), 0) if self.at_plane else 0.0
 
         def together(spots: Array) -> Array:
             """Infinite from the pole on, which no surface reaches."""
-            with np.errstate(divide="ignore"):
-                y = np.divide(spots, np.maximum(1 + self.series * spots, 0.0)) / self.per + gas
-            return np.asarray(y / (1 + self.bodies * y) if self.bodies else y)
+            y = in_series(in_series(spots, self.series) / self.per + gas, self.bodies)
+            return np.where(np.isnan(y), np.inf, y)
 
         return law.mapped(together)
 
@@ -238,15 +226,8 @@ def answer_of(model: Any, q: Quantity) -> Answer | None:
     spots = f"conductance_si{way}" if q.name.startswith("joint") else ""
     from_body = how is not None and how.reference == "body"
     bodies = how.bodies(model.surface, model.film.rho) if spots and how and model.film else 0.0
-    return Answer(
-        spots,
-        load,
-        per=model.surface.nominal_area,
-        series=_series(model, spots) if spots and not from_body else 0.0,
-        sunk=0.0 if from_body else sunk,
-        bodies=bodies,
-        at_plane=model.filled,
-    )
+    series, sunk = (0.0, 0.0) if from_body else (_series(model, spots) if spots else 0.0, sunk)
+    return Answer(spots, load, model.surface.nominal_area, series, sunk, bodies, at_plane=model.filled)
 
 
 def _series(model: Any, quantity: str) -> float:

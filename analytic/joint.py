@@ -174,26 +174,8 @@ def rise_of_summits(
 ) -> float | None:
     """Return how far the mean plane of the summits lies above that of the surface, over sigma.
 
-    Parameters
-    ----------
-    surface : Surface
-        With the standard deviation of the summits' heights.
-    heights : HeightLaw
-        Nayak's know it.
-    moments : SpectralMoments, optional
-        Of the surface.
-    rms : float, optional
-        Root mean square height of the surface, m, which goes before its moments.
-
-    Returns
-    -------
-    float or None
-        ``4 sqrt(m0/(pi alpha))/sigma``; None if neither tells m0 and alpha.
-
-    Raises
-    ------
-    ValueError
-        If `rms` is not above sigma.
+    It is ``4 sqrt(m0/(pi alpha))/sigma``, by Nayak's heights, the root mean square height of the surface (m),
+    or its moments, in this order; None if none of them tells m0 and alpha.
 
     Examples
     --------
@@ -217,22 +199,12 @@ def rise_of_summits(
 
 @dataclass(frozen=True)
 class Gap:
-    """Gap conductance of a surface, W/(m^2 K), as a function of the separation from the summits' mean plane.
+    """Gap conductance of a surface, W/(m^2 K), at separations from the mean plane of its summits."""
 
-    Parameters
-    ----------
-    gas : Gas or None
-        None: a vacuum, which conducts nothing.
-    sigma, rms : float
-        Standard deviation of the summits' heights, and root mean square height of the surface, m.
-    rise : float
-        Height of the mean plane of the summits above that of the surface, over sigma.
-    """
-
-    gas: Gas | None
-    sigma: float
-    rms: float
-    rise: float
+    gas: Gas | None  # None: a vacuum, which conducts nothing
+    sigma: float  # standard deviation of the summits' heights, m
+    rms: float  # root mean square height of the surface, m
+    rise: float  # height of the mean plane of the summits above that of the surface, over sigma
 
     def __call__(self, h: ArrayLike, order: int = 0) -> Array:
         """At distances of the mean planes over sigma, between deformed surfaces; or a derivative."""

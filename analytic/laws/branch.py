@@ -33,21 +33,12 @@ class Regimes:
 
     Those of one separation follow each other, upwards, from the lowest height in contact on; neighbours
     have different pieces. All arrays have the shape (intervals,).
-
-    Parameters
-    ----------
-    separation : ndarray of int
-        Which of the separations, not decreasing.
-    low, high : ndarray
-        Reduced heights ``low <= s < high``.
-    piece : ndarray of int
-        Number of the piece.
     """
 
-    separation: Ints
-    low: Array
+    separation: Ints  # which of the separations, not decreasing
+    low: Array  # reduced heights ``low <= s < high``
     high: Array
-    piece: Ints
+    piece: Ints  # its number
 
     @property
     def goes_on(self) -> Marks:
@@ -61,35 +52,18 @@ class Branch:
     """History of a surface: its law of contact, where unloading began, what spots conduct through.
 
     Without `unload_from` it is the loading branch; `of` gives the branch that a quantity is on.
-
-    Parameters
-    ----------
-    law : ContactLaw
-        In reduced units.
-    unload_from : float, optional
-        Lowest separation that an unloaded surface has reached, d/sigma.
-    conductance : SpotConductance, optional
-        Of "conductance_si".
-    ratios : ndarray, optional
-        Radius of each summit over that of the surface, along the last axis of what formulas take.
     """
 
-    law: ContactLaw
-    unload_from: float | None = None
-    conductance: SpotConductance | None = None
-    ratios: Array | None = None
+    law: ContactLaw  # in reduced units
+    unload_from: float | None = None  # lowest separation that an unloaded surface has reached, d/sigma
+    conductance: SpotConductance | None = None  # of "conductance_si"
+    ratios: Array | None = None  # of the radii of summits to that of the surface, along the last axis of all
 
     def of(self, quantity: str) -> Self:
         """Return the branch that a quantity is on.
 
-        Where nothing yields, unloading follows the loading curve, from any separation.
-
-        Raises
-        ------
-        KeyError
-            If there is no such quantity.
-        ValueError
-            If unloading, or what spots conduct through, is not known, or a variance is infinite.
+        Where nothing yields, unloading follows the loading curve, from any separation. A quantity that there
+        is not is a KeyError; unloading or conductance that is not known, a ValueError.
         """
         q = quantity_of(quantity)
         if q.base == "conductance_si" and self.conductance is None:
@@ -140,19 +114,9 @@ class Branch:
     ) -> Array:
         """Return what summits of this branch add at separations, each by its own formula, 0 without contact.
 
-        Parameters
-        ----------
-        quantities : sequence of str
-            Their names, on whatever way.
-        h, s, e : array_like
-            Reduced separations and heights and moduli E*(s)/E*, whose shapes broadcast.
-        slope : bool, optional
-            Whether to give derivatives by the penetration instead, within a piece.
-
-        Returns
-        -------
-        ndarray
-            Over scales for the radius of the surface, shape (quantities, *common shape).
+        At reduced separations and heights and moduli E*(s)/E*, whose shapes broadcast; over scales for the
+        radius of the surface, shape (quantities, *common shape). With `slope` the derivatives by the
+        penetration instead, within a piece.
         """
         h, s, e = (np.asarray(x, dtype=np.float64) for x in (h, s, e))
         pieces = self.pieces(h, s - h, e)

@@ -26,15 +26,10 @@ BRIDGE = 1.5  # a bridge ends at this multiple of the penetration of its jump
 class Piece(NamedTuple):
     """What holds from a penetration on: load and area over those at delta_c by Hertz's law.
 
-    Attributes
-    ----------
-    start : float
-        ``x = delta/delta_c`` where it begins.
-    load, area : (float, float) or callable
-        Factor and exponent of a power of x, or a function of the law, ``u = sqrt(x)`` and e.
+    Each is factor and exponent of a power of x, or a function of the law, ``u = sqrt(x)`` and e.
     """
 
-    start: float
+    start: float  # ``x = delta/delta_c`` where it begins
     load: tuple[float, float] | Formula
     area: tuple[float, float] | Formula
 
@@ -68,15 +63,10 @@ class ElasticPlastic(ContactLaw):
 
     An asperity of modulus E*(s) yields at ``delta_c = critical/e^2``, because its hardness does not
     depend on its height.
-
-    Parameters
-    ----------
-    critical : float, optional
-        Critical penetration over sigma of an asperity of modulus E*.
     """
 
     _: KW_ONLY
-    critical: float | None = None
+    critical: float | None = None  # penetration over sigma of an asperity of modulus E*
 
     elastic: ClassVar[bool] = False
     yields: ClassVar[bool] = True
@@ -89,6 +79,16 @@ class ElasticPlastic(ContactLaw):
         bridge = getattr(self, "bridge", None)
         if bridge not in (None, "hermite"):
             raise ValueError(f"bridge = {bridge!r}: give 'hermite', or leave it out")
+
+    @property
+    def yield_factor(self) -> float:
+        """The greatest contact pressure at the onset of yield over the hardness, or the yield strength."""
+        raise NotImplementedError
+
+    def _critical_at(self, strain: float, surface: Surface) -> float:
+        """delta_c over sigma, of an asperity of so many times less hardness, or strength, than modulus."""
+        root = math.pi * self.yield_factor * strain / 2
+        return root * root * surface.radius / surface.sigma  # inf where a power would raise
 
     @property
     def _pieces(self) -> tuple[Piece, ...]:
@@ -139,29 +139,17 @@ class ElasticPlastic(ContactLaw):
 
 @dataclass(frozen=True)
 class FromHardness(ElasticPlastic):
-    """A law that yields at ``delta_c = (pi K H/(2 E*))^2 R``, where the contact pressure reaches K H.
-
-    Parameters
-    ----------
-    hardness : float, optional
-        H of the softer body, Pa. Give it, or `critical`.
-    """
+    """A law that yields at ``delta_c = (pi K H/(2 E*))^2 R``, where the contact pressure reaches K H."""
 
     _: KW_ONLY
-    hardness: float | None = None
+    hardness: float | None = None  # H of the softer body, Pa; or `critical`
 
     in_si: ClassVar[tuple[str, str]] = ("hardness", "a hardness in Pa or a critical penetration over sigma")
-
-    @property
-    def yield_factor(self) -> float:
-        """K, the greatest contact pressure at the onset of yield over the hardness."""
-        raise NotImplementedError
 
     def reduced_on(self, surface: Surface) -> float:
         """delta_c of an asperity of modulus E*, over sigma."""
         assert self.hardness is not None
-        strain = math.pi * self.yield_factor * self.hardness / (2 * surface.E_star)
-        return strain * strain * surface.radius / surface.sigma  # inf where a power would raise
+        return self._critical_at(self.hardness / surface.E_star, surface)
 
 
 class EtsionKligermanKadin(ContactLaw):
@@ -177,12 +165,8 @@ class EtsionKligermanKadin(ContactLaw):
 
     Known defects: the fit of loading jumps up by 3 % at delta_c, and unloading starts from there: up to
     x_m = 1.248 a loading loop releases more work than it took, by up to 3 %. With ``bridge = "hermite"``
-    unloading starts from the bridged load, and the gain is at most 0.13 %, at x_m = 1.11.
-
-    Notes
-    -----
-    Source: I. Etsion, Y. Kligerman, Y. Kadin, Int. J. Solids Struct. 42 (2005) 3716 [mem: constants
-    recalled].
+    unloading starts from the bridged load, and the gain is at most 0.13 %, at x_m = 1.11. Source: I. Etsion,
+    Y. Kligerman, Y. Kadin, Int. J. Solids Struct. 42 (2005) 3716 [mem: constants recalled].
     """
 
     def __init__(self, loading: Any, deepest: Any) -> None:

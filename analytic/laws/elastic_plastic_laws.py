@@ -282,6 +282,5 @@ class JacksonGreen(ElasticPlastic):
         if self.yield_strength is None:
             return self
         strain = self.yield_strength / surface.E_star
-        root = math.pi * self.yield_factor * strain / 2
-        critical = root * root * surface.radius / surface.sigma  # inf where a power would raise
+        critical = self._critical_at(strain, surface)
         return replace(self, yield_strength=None, yield_strain=strain, critical=critical)

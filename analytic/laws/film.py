@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 from analytic.arrays import Array, hold
 from analytic.surface import Surface, check_positive
 
-_DIRECT = 60  # images that are rather summed one by one
 _NEGLIGIBLE = 1e-18  # weight of an image
 _ALTERNATING = 24  # terms of an alternating sum, whose error is 5.8 to that power
 _SMALLEST = 1e-100  # radius over thickness
@@ -130,23 +129,12 @@ class SpotConductance:
     """Conductance of a spot by its radius: constriction, also in a layer, in series with a film.
 
     ``1/C = rho/(4 a) + r_f/(pi a^2)``, so that C over 4 sqrt(R sigma)/rho is ``a^2/(a + b)``; over a layer
-    rho depends on a.
-
-    Parameters
-    ----------
-    film : Film
-        What spots conduct through.
-    unit : float
-        sqrt(R sigma), m.
-
-    Notes
-    -----
-    Source: R. Holm, Electric Contacts (1967). For Sharvin's (or Knudsen's) resistance with the mean free
-    path l, add ``16 l/(3 pi)`` to b.
+    rho depends on a. Source: R. Holm, Electric Contacts (1967). For Sharvin's (or Knudsen's) resistance with
+    the mean free path l, add ``16 l/(3 pi)`` to b.
     """
 
     film: Film
-    unit: float
+    unit: float  # sqrt(R sigma), m
 
     @property
     def finest(self) -> float:
@@ -188,20 +176,7 @@ def layered_resistivity(
         G(p) = int_0^inf exp(-p x) sin(x) J_1(x)/x^2 dx = Im [s (s - sqrt(1 + s^2)) - asinh s]/2,  s = p - i
 
     Thin layers of little conductivity add ``t/(pi k a^2)`` to the half-space, thick ones are a half-space.
-
-    Parameters
-    ----------
-    radius : array_like
-        Of spots, negative ones too; a small step into the complex plane gives the derivative.
-    thickness : float or ndarray
-        In the same unit.
-    conductivity, under, other : float
-        Of the layer, the body under it, and the other body, W/(m K).
-
-    Returns
-    -------
-    ndarray
-        m K/W, in the common shape of radii and thicknesses.
+    In m K/W; radii may be negative, and a small step into the complex plane gives the derivative.
     """
     radius, thickness = np.broadcast_arrays(radius, thickness)
     side = np.where(np.real(radius) < 0, -1.0, 1.0)
@@ -225,13 +200,10 @@ def _image(p: Any) -> Any:
 def _images(ratio: float) -> tuple[tuple[int, float], ...]:
     """Images and their weights, whose sum is that of all ``ratio^n``.
 
-    Where many count, by the transformation of van Wijngaarden into an alternating sum, and the acceleration
-    of H. Cohen, F. Rodriguez Villegas, D. Zagier, Exp. Math. 9 (2000) 3, algorithm 1.
+    By the transformation of van Wijngaarden into an alternating sum, and the acceleration of H. Cohen,
+    F. Rodriguez Villegas, D. Zagier, Exp. Math. 9 (2000) 3, algorithm 1.
     """
-    size = abs(ratio)
-    if size**_DIRECT < _NEGLIGIBLE:
-        return tuple((n, ratio**n) for n in range(1, _DIRECT) if size**n > _NEGLIGIBLE)
-    found: dict[int, float] = {}
+    size, found = abs(ratio), dict[int, float]()
     total = ((3 + math.sqrt(8)) ** _ALTERNATING + (3 - math.sqrt(8)) ** _ALTERNATING) / 2
     b, c, m = -1.0, -total, _ALTERNATING
     for k in range(m):
@@ -250,26 +222,8 @@ def crowding_factor(area_fraction: ArrayLike) -> Array:
     """Factor ``psi = (1 - sqrt(A/A_n))^1.5`` by which the conductance of a surface is to be divided.
 
     It couples the spots through the area of their own surface: for sums over a surface, never for one
-    contact.
-
-    Parameters
-    ----------
-    area_fraction : array_like
-        Real over nominal area of each surface, from 0 to below 1.
-
-    Returns
-    -------
-    ndarray
-        In its shape.
-
-    Raises
-    ------
-    ValueError
-        If an area fraction is out of range.
-
-    Notes
-    -----
-    Source: M. G. Cooper, B. B. Mikic, M. M. Yovanovich, Int. J. Heat Mass Transf. 12 (1969) 279.
+    contact. Source: M. G. Cooper, B. B. Mikic, M. M. Yovanovich, Int. J. Heat Mass Transf. 12 (1969) 279.
+    An area fraction that is not from 0 to below 1 is a ValueError.
     """
     fraction = np.asarray(area_fraction, dtype=np.float64)
     if not np.all((fraction >= 0) & (fraction < 1)):

@@ -113,13 +113,7 @@ class ContactLaw:
 
     @property
     def reduced(self) -> Any:
-        """The constant that follows the radius: one number, or one for each summit.
-
-        Raises
-        ------
-        ValueError
-            If it was given in SI units and the law is not on a surface.
-        """
+        """The constant that follows the radius, or one for each summit; a ValueError if it is in SI units."""
         assert self.of_radius
         value = getattr(self, self.of_radius[0])
         if value is None:
@@ -129,17 +123,9 @@ class ContactLaw:
         return value
 
     def with_radii(self, ratios: Array) -> Self:
-        """Return it in the units of summits whose radii are these multiples of the surface's.
+        """Return it in the units of summits whose radii are these multiples c of the surface's, one a summit.
 
-        Parameters
-        ----------
-        ratios : ndarray
-            One a summit: formulas then take arrays of this shape.
-
-        Returns
-        -------
-        ContactLaw
-            Radii of contact over sqrt(c R sigma), loads over ``(4/3) E* sqrt(c R) sigma^(3/2)``.
+        Radii of contact over sqrt(c R sigma), loads over ``(4/3) E* sqrt(c R) sigma^(3/2)``.
         """
         if not self.of_radius:
             return self
