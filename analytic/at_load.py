@@ -21,22 +21,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from analytic.arrays import Array, Ints
+from analytic.arrays import Array
 from analytic.exact_law import SCORES, in_cells, normal_scores, shares_upto
 from analytic.measured_summits import MeasuredHeights
 from analytic.quadrature import gauss_legendre
 from analytic.quantities import quantity_of
-from analytic.roots import sign_changes
 
-_LIFTS, _TIMES = 24, (1, 2, 4)  # nodes in the separation, and as many times until the given sum is found
-_MANY, _LIFTS_OF_MANY = 100.0, 16  # contacts from which so many do as well
-_EXACT, _AT_LAST = 2e-6, 1e-3  # of its mean and its root mean square; with most nodes, of tails and jumps
-_ALL = 1e-6  # of what surfaces hold that is lost with those of heavy tails; else that of all is known better
-_DEEPEST = 20.0  # penetration over sigma that no asperity reaches
 _PARTS = np.array([0.25, 0.5, 0.75, 1.0])  # of the penetration at which one asperity has all of the load
-_CELLS = 3072  # of the heights, at least
-_STEP = 3e-4  # of differences, over the separation or the penetration of an asperity with all of the load
-_GRID, _SPREADS = 4096, 12.0  # points, and standard deviations of the given sum, over which others bear it
+_GRID = 4096  # points of the given sum, over which others bear it
 
 
 class Moments(NamedTuple):
@@ -69,16 +61,19 @@ def specimen_moments(model: Any, given: str, value: float, names: Sequence[str])
         raise ValueError("load_slope: its slope is not known; give other quantities")
     if model.count == "fixed" and model.number < 2:
         raise ValueError(f"n_asperities = {model.number:g}: give 2 or more; no other bears what one leaves")
-    several, ends, found = [given, *names], _ends(model, given, value), np.zeros(2)
-    last, many = _at_last(model, several, value, ends[-1]), float(model.mean("contacts", ends[1])) > _MANY
-    for times in _TIMES:
-        nodes = times * (_LIFTS_OF_MANY if many else _LIFTS)
-        mean, std = _integrated(model, several, value, ends, last, nodes)
+    places, scores = normal_scores(model, given, value, wide=3.0)  # fewer than a law needs: they place nodes
+    if scores[0] > -SCORES or scores[-1] < SCORES:  # a Poisson number of asperities may be 0
+        raise ValueError(f"{given} = {value:g}: not every surface has a separation with it")
+    ends = np.interp([-SCORES, 0.0, SCORES], np.maximum.accumulate(scores), places).tolist()  # next to all
+    several, found, contacts = [given, *names], np.zeros(2), float(model.mean("contacts", ends[1]))
+    last = _at_last(model, several, value, ends[-1])
+    for times in (1, 2, 4):
+        mean, std = _integrated(model, several, value, ends, last, times * (16 if contacts > 100 else 24))
         before, found = found, np.array([mean[1], math.hypot(mean[1], std[1])]) / value
         missed = min(abs(found - 1).max(), abs(found - before).max())  # a law with jumps passes it
-        if missed < _EXACT:
+        if missed < 2e-6:
             break
-    if missed > _AT_LAST:
+    if missed > 1e-3:
         raise ValueError(f"{given} = {value:g}: its mean is found to {missed:.1g} only; draw surfaces")
     keys = ["separation", *several]
     return Moments(*(dict(zip(keys, values.tolist(), strict=True)) for values in (mean, std)))
@@ -90,13 +85,13 @@ def _at_last(model: Any, several: Sequence[str], value: float, high: float) -> t
     mean, square = _gains(model, several, value, high, float(alone))[1]
     variance = square - mean**2
     of_all, std = (np.array([float(of(name, high)) for name in several]) for of in (model.mean, model.std))
-    if np.allclose([mean, square], [of_all, of_all**2 + std**2], rtol=_ALL, atol=0):
+    if np.allclose([mean, square], [of_all, of_all**2 + std**2], rtol=1e-6, atol=0):  # known to more digits
         mean, variance = of_all, std**2
     return np.append(high, mean), np.append(0.0, variance)
 
 
 def _integrated(
-    model: Any, several: Sequence[str], value: float, ends: tuple[float, float, float],
+    model: Any, several: Sequence[str], value: float, ends: Sequence[float],
     last: tuple[Array, Array], nodes: int,
 ) -> tuple[Array, Array]:  # fmt: skip
     """Means and standard deviations of the separation and of each sum, from those at the last separation."""
@@ -115,15 +110,6 @@ def _integrated(
     return start + change, np.sqrt(np.maximum(variance - change**2, 0.0))
 
 
-def _ends(model: Any, given: str, value: float) -> tuple[float, float, float]:
-    """Separations between which next to all surfaces have the given sum, and the median."""
-    places, scores = normal_scores(model, given, value, wide=3.0)  # fewer than a law needs: they place nodes
-    if scores[0] > -SCORES or scores[-1] < SCORES:  # a Poisson number of asperities may be 0
-        raise ValueError(f"{given} = {value:g}: not every surface has a separation with it")
-    low, middle, high = np.interp([-SCORES, 0.0, SCORES], np.maximum.accumulate(scores), places).tolist()
-    return low, middle, high
-
-
 def _gains(
     model: Any, several: Sequence[str], value: float, h: float, alone: float
 ) -> tuple[float, Array, Array]:
@@ -134,7 +120,7 @@ def _gains(
     """
     n, poisson, given = model.number, model.count == "poisson", several[0]
     one, two = (0, 0) if poisson else (1, 2)  # of a Poisson number there are as many beside one
-    step = _STEP * min(1 / (1 + abs(h)), alone)
+    step = 3e-4 * min(1 / (1 + abs(h)), alone)  # of differences
     at = h - step * np.arange(3)
 
     def parts(ratios: Array) -> Array:
@@ -147,13 +133,12 @@ def _gains(
     terms = rule.terms(several, at, model.grading, model.ways).reshape(-1, len(several), at.size)
     values = np.moveaxis(terms * units, 0, -1)  # here, one and two steps on: shape (several, 3, heights)
     means, squares = (rule.probabilities * values**k for k in (1, 2))
-    low, high, own = in_cells(model, several, h, rule, terms[..., 0], _CELLS, float(at[-1]))
+    low, high, own = in_cells(model, several, h, rule, terms[..., 0], 3072, float(at[-1]))
     cells = (low + high).T / 2 * units  # what asperities add in cells
     p, added = np.append(rule.probabilities, rule.below), np.append(values[0, 0], 0.0)
     sum_of, square = (float(n * each[0, 0].sum()) for each in (means, squares))
     spread = math.sqrt(square if poisson else max(square - sum_of**2 / n, 0.0))
-    least = min(sum_of, value) - _SPREADS * spread
-    start = max(least, 0.0)
+    start = max(min(sum_of, value) - 12 * spread, 0.0)
     width = (value - start) / (_GRID - 1)
     bear = shares_upto(model, given, h, n - two, np.asarray(start + width * np.arange(_GRID)))
     left, none = (value - start - added) / width, bear[0] if start == 0 else 0.0
@@ -196,16 +181,9 @@ def _beside(left: Array, cells: Array, bear: Array, none: float) -> Callable[[Ar
 
 def _deepest(model: Any, given: str, value: float, h: Array, ratios: Array | None = None) -> Array:
     """Penetrations over sigma at which one asperity alone has a value, by separation and ratio of radii."""
-    target = value / quantity_of(given).scale(model.surface)
-
-    def excess(penetration: Array, which: Ints) -> Array:
-        s = h[which] + penetration
-        own = model.ways.of(given)
-        own = own if ratios is None else own.with_radii(ratios[which])
-        return np.asarray(own.terms([given], h[which], s, model.grading(s))[0] - target)
-
-    deepest = np.full_like(h, _DEEPEST)
-    has = np.flatnonzero(excess(deepest, np.arange(h.size)) > 0)
-    first, unit = np.zeros(has.size), np.ones(has.size)
-    deepest[has] = sign_changes(lambda y, k: excess(y, has[k]), first, deepest[has], unit)
-    return deepest
+    penetrations, own = np.geomspace(1e-12, 20.0, 2048), model.ways.of(given)  # which no asperity reaches
+    own = own if ratios is None else own.with_radii(ratios)
+    s = h + penetrations[:, None]
+    added = own.terms([given], h, s, model.grading(s))[0] * quantity_of(given).scale(model.surface)
+    columns = np.log(np.maximum(added, 1e-300)).T  # of log(penetration) they are next to straight
+    return np.exp([np.interp(math.log(value), column, np.log(penetrations)) for column in columns])

@@ -25,11 +25,7 @@ from analytic.nayak import Nayak
 from analytic.quadrature import gauss_legendre, panelled
 
 MEAN_CURVATURE = 8 / math.sqrt(3 * math.pi)  # of the summits, over sqrt(m4/3)
-_DIVERGES = 4.0  # power of the radius that has no mean: the density of g begins as its cube
 _BLOCK = 1024  # numbers whose rules are summed at a time
-_NODES, _AS_WIDE = 64, 0.6  # points for curvatures, if their density bends over so many heights
-_RAREST = 1e-18  # share of the touching heights above which curvatures are left out
-_SAME = 1e-12  # relative rounding of the curvature of a bound
 _WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
 
 
@@ -87,10 +83,10 @@ class RandomCurvature:
 
         If there is a bound, the last one is that of all flatter summits.
         """
-        top = float(self.heights.isf(np.array(_RAREST), highest))
+        top = float(self.heights.isf(np.array(1e-18), highest))
         first = np.sqrt(MEAN_CURVATURE / self.largest)
         last = max(float(np.sqrt(self.highest(0.0, top))), first)
-        x, w = gauss_legendre(int(np.ceil(_NODES * max(1.0, _AS_WIDE / self.narrowest))))
+        x, w = gauss_legendre(int(np.ceil(64 * max(1.0, 0.6 / self.narrowest))))  # more where densities bend
         roots = first + (last - first) * x
         curvatures, weights = roots**2, 2 * roots * (last - first) * w
         if first > 0:
@@ -99,7 +95,7 @@ class RandomCurvature:
 
     def density(self, s: Array, g: Array) -> Array:
         """Return the density of the heights `s` of summits of curvatures `g` of a rule, shape (n,)."""
-        own, bound = np.empty(s.shape), g <= MEAN_CURVATURE / self.largest * (1 + _SAME)
+        own, bound = np.empty(s.shape), g <= MEAN_CURVATURE / self.largest * (1 + 1e-12)
         own[bound] = self.cdf(g[bound], s[bound]) * self.heights.pdf(s[bound])
         own[~bound] = self.with_height(g[~bound], s[~bound])
         return own
@@ -152,7 +148,7 @@ class RandomCurvature:
         """
         if (2 * power) % 1:
             raise ValueError(f"power = {power!r}: give a multiple of 1/2")
-        if not 0 <= power < (_DIVERGES if math.isinf(self.largest) else math.inf):
+        if not 0 <= power < (4 if math.isinf(self.largest) else math.inf):  # the density begins as a cube
             raise ValueError(
                 f"power = {power!r}: give one from 0 to below 4 (radii have no mean of the fourth power, "
                 "unless largest bounds them)"

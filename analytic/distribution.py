@@ -10,12 +10,7 @@ from numpy.typing import ArrayLike
 
 from analytic.arrays import Array, hold
 
-_NARROW = 1e-9  # of the table: cells that have no density to be told
 _FAR = 1e100  # beyond all sums
-_SAFE = 8.0  # times what two computations differ by: their errors may have one sign
-_USUAL = 5e-7  # what two computations may have in common, by a grid of 630 laws
-_NOTHING = 1e-50  # less than any value but 0
-_EPSILON = 2.0**-53  # what 1 less a share has of digits
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -24,26 +19,13 @@ class Law:
 
     Shares are linear between the points of the table, of which the first and the last are those that lattices
     resolve. Beyond them the share is a bound, that at the last point, and quantiles are nan.
-
-    Parameters
-    ----------
-    x : ndarray
-        Values, increasing; twice where one has a probability of its own.
-    upto : ndarray
-        Shares of the surfaces up to each.
-    ends : (float, float)
-        Values that none is below, or above.
-    again : callable
-        Computes the law once more, by other lattices and other cells of the heights.
-    moments : (float, float), optional
-        Mean and variance over surfaces; default: those of the table.
     """
 
-    x: Array
-    upto: Array
-    ends: tuple[float, float]
-    again: Callable[[], Any]
-    moments: tuple[float, float] | None = None
+    x: Array  # values, increasing; twice where one has a probability of its own
+    upto: Array  # shares of the surfaces up to each
+    ends: tuple[float, float]  # values that none is below, or above
+    again: Callable[[], Any]  # computes the law once more, by other lattices and other cells of the heights
+    moments: tuple[float, float] | None = None  # mean and variance over surfaces; default: of the table
 
     def __repr__(self) -> str:
         """One line: all that it holds would fill pages."""
@@ -87,7 +69,7 @@ class Law:
 
     def isf(self, q: ArrayLike) -> Array:
         """Return the smallest value y with P(Y > y) <= q; nan beyond what lattices resolve."""
-        return self.ppf(1 - np.where(np.asarray(q) > 0, np.maximum(q, _EPSILON), q))
+        return self.ppf(1 - np.where(np.asarray(q) > 0, np.maximum(q, 2.0**-53), q))
 
     def median(self) -> float:
         """Return the median over surfaces: half of them lie below it."""
@@ -105,20 +87,23 @@ class Law:
     def pdf(self, y: ArrayLike) -> Array:
         """Return the density of all values but those with a probability of their own."""
         widths = np.diff(self.x)
-        wide = widths > _NARROW * (self.x[-1] - self.x[0])
+        wide = widths > 1e-9 * (self.x[-1] - self.x[0])  # others have no density to be told
         middle, density = self.x[:-1][wide] + widths[wide] / 2, np.diff(self.upto)[wide] / widths[wide]
         return np.asarray(np.interp(np.asarray(y, dtype=np.float64), middle, density, left=0, right=0))[()]
 
     @property
     def atom(self) -> float:
         """Probability that no asperity touches."""
-        return float(self.cdf(0.0) - self.cdf(-_NOTHING))
+        return float(self.cdf(0.0) - self.cdf(-1e-50))
 
     @cached_property
     def error(self) -> float:
-        """Error bound of `cdf`, from the second computation."""
+        """Error bound of `cdf`, from the second computation.
+
+        Their errors may have one sign, and something in common, by a grid of 630 laws.
+        """
         again, x = self.again(), np.append(self.x, (self.x[1:] + self.x[:-1]) / 2)
-        return float(_SAFE * np.abs(self.cdf(x) - again.cdf(x)).max() + _USUAL)
+        return float(8 * np.abs(self.cdf(x) - again.cdf(x)).max() + 5e-7)
 
     def mapped(self, forward: Callable[[Any], Any], *, falls: bool = False) -> "Law":
         """Return the law of a function that rises, or falls, with the value."""

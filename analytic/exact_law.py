@@ -24,25 +24,10 @@ from analytic.quantities import quantity_of
 
 _POINTS = 2**15, 5 * 2**13  # of a lattice, and of another one
 _CELLS = 12_288, 20_480  # of the heights, by the root of the probability, and as many evenly between nodes
-_JUST = 1e-9  # of a cell
 _STENCIL = range(-3, 4)  # lattice points that share a value and keep its moments up to the sixth
 _MARGIN = 16  # lattice points below the lowest sum
-_DAMPED = 20.0  # logarithm of the damping over a period, which is twice as long as what is read
-_LAST_DIGIT = 1e-15  # of the asperities that touch: if fewer are beyond a lattice, damping only takes digits
 _REACH = 9.0  # standard deviations that hold all but 1e-18
-_RARE, _NEVER = 1e-2, 1e-9  # asperities on a surface that add more than usual ones, and that pull more
-_RESOLVED = (
-    1 / 12
-)  # of the standard deviation of usual sums: the longest step of a lattice, unless of surfaces
-_FEW = 1e-25  # or more expected asperities touch alone; they have a lattice narrower than of usual sums, too
-_WIDER = 32.0 ** np.arange(-1, 4)
-_SINGLE = 1e-9  # width of a single value, over itself and the median
-_OWN = 2  # lattice points to one that the distribution of one asperity has of its own
-_ROUNDING = 5e-12  # of a probability of sums, times the root of the number of contacts
-SCORES, _HIGHEST, _APART = 6.0, 6.5, 0.4  # of normal scores: looked for, told, and from one to the next
-_LONGER, _SMALLEST, _TABLE = 1.25, 1e-3, 8192
-_LEVEL = 1e-9  # of a score: all asperities touch, and the rest of the surfaces have none
-_DEGREE = 5  # of a spline through scores
+SCORES = 6.0  # normal scores that are looked for
 
 
 class OneAsperity:
@@ -67,7 +52,8 @@ class OneAsperity:
     def distribution(self) -> tuple[Array, Array]:
         """Values, and the share of asperities that touch and add no more: linear in between."""
         median = np.interp(self.touching / 2, np.cumsum(self.shares), np.abs(self.middle))
-        width = np.maximum(self.high - self.low, _SINGLE * (median + np.abs(self.high)))
+        single = 1e-9 * (median + np.abs(self.high))  # width of a single value
+        width = np.maximum(self.high - self.low, single)
         density, places = self.shares / width, np.concatenate([self.high - width, self.high])
         order = np.argsort(places)
         slopes = np.cumsum(np.concatenate([density, -density])[order], dtype=np.longdouble)[:-1]
@@ -76,16 +62,20 @@ class OneAsperity:
 
     @cached_property
     def span(self) -> tuple[float, float, float]:
-        """Lowest sum, highest one of surfaces without rare large values, longest step of a lattice."""
+        """Lowest sum, highest one of surfaces without rare large values, longest step of a lattice.
+
+        The step is a twelfth of the standard deviation of usual sums. Surfaces on which an asperity may touch
+        alone have lattices of any step, that is narrower ones, too.
+        """
         x, p, n = self.middle, self.shares, self.number
         rarer = n * np.cumsum(p[::-1])[::-1]
-        usual, pull = np.where(rarer > min(_RARE, rarer[0] / 2), x, 0.0), np.minimum(x, 0.0)
+        usual, pull = np.where(rarer > min(1e-2, rarer[0] / 2), x, 0.0), np.minimum(x, 0.0)
         means, squares = ((p * np.stack([usual, pull]) ** k).sum(axis=1) for k in (1, 2))
         spread = np.sqrt(n * np.maximum(squares - (0.0 if self.poisson else means**2), 0.0))
-        deepest = pull[min(int(np.searchsorted(n * np.cumsum(p), _NEVER)), x.size - 1)]
+        deepest = pull[min(int(np.searchsorted(n * np.cumsum(p), 1e-9)), x.size - 1)]  # fewer pull more
         low = (n * means - _REACH * spread).max() + 2 * deepest
         high = n * means[0] + _REACH * spread[0] + max(usual.max(), 0.0)
-        return float(low), float(high), np.inf if self.alone > _FEW else _RESOLVED * float(spread[0])
+        return float(low), float(high), np.inf if self.alone > 1e-25 else float(spread[0]) / 12
 
     def upto(self, x: Array, end: float, points: int) -> Array:
         """Return the shares of surfaces in contact with sums up to x, by a lattice that ends there or beyond.
@@ -100,7 +90,9 @@ class OneAsperity:
         kept = (places < points + 2 * _MARGIN) & (places > -points / 2)
         near, p, f = np.rint(places[kept]), self.shares[kept], np.zeros(size)
         lost = float(self.shares[~kept].sum())
-        damping = 0.0 if np.isfinite(self.span[2]) and lost <= _LAST_DIGIT * self.touching else _DAMPED / size
+        damping = 20.0 / size  # by exp(-20) over a period, of which half is read
+        if np.isfinite(self.span[2]) and lost <= 1e-15 * self.touching:  # it would only take digits
+            damping = 0.0
         off, at = places[kept] - near, near.astype(np.int64)
         for i in _STENCIL:  # by Lagrange's weights
             weights = np.prod([(off - j) / (i - j) for j in _STENCIL if j != i], axis=0)
@@ -121,26 +113,16 @@ class OneAsperity:
         one = np.interp(x, *self.distribution, left=0.0, right=self.touching)
         return np.asarray(several + self.alone * one)
 
-    def shares_upto(self, x: Array, points: int) -> Array:
-        """Return the shares of all surfaces with sums up to x, by a lattice that ends with the largest x.
-
-        Of many contacts it has usual sums, and ends where it would not resolve them: shares are then a bound.
-        """
-        if not self.low.size or x.max() <= self.span[0]:
-            return np.where((x >= 0) & (x >= (self.span[0] if self.low.size else 0.0)), 1.0, 0.0)
-        low, usual, step = self.span
-        high = float(np.clip(x.max(), low if np.isinf(step) else usual, max(usual, low + points * step)))
-        return self.upto(x, high, points) + self.none * (x >= 0)
-
     def table(self, points: int) -> tuple[Array, Array]:
         """Return sums and shares of surfaces up to them, by ever wider lattices; a jump is a sum twice."""
         if not self.low.size:
             return np.zeros(2), np.array([0.0, 1.0])
-        rounding = _ROUNDING * max(math.sqrt(self.number * self.touching), 1.0)
+        rounding = 5e-12 * max(math.sqrt(self.number * self.touching), 1.0)
         own, x, upto, (low, usual, step) = self.distribution[0], np.zeros(0), np.zeros(0), self.span
-        begin, least = low, -low if np.isinf(step) else usual - low
-        for end in [low + w for w in (usual - low) * _WIDER if least <= w <= max(points * step, usual - low)]:
-            new = np.union1d(np.linspace(low, end, points), own[:: max(1, _OWN * own.size // points)])
+        begin, wide, widest = low, (usual - low) * 32.0 ** np.arange(-1, 4), max(points * step, usual - low)
+        least = -low if np.isinf(step) else usual - low
+        for end in low + wide[(wide >= least) & (wide <= widest)]:
+            new = np.union1d(np.linspace(low, end, points), own[:: max(1, 2 * own.size // points)])
             new = np.union1d(new[(new > begin) & (new <= end)], [0.0] if begin <= 0 else [])
             x, upto, begin = np.append(x, new), np.append(upto, self.upto(new, end, points)), end
             if upto[-1] > 1 - self.none - rounding:
@@ -176,13 +158,18 @@ def shares_upto(
 ) -> Array:
     """Return the shares of surfaces of a number of asperities whose sum is no more than some values, SI.
 
-    They are right to 1e-6 or better. For what is integrated over: one lattice that suits the largest of
-    them, without the far tails of a `Law`.
+    They are right to 1e-6 or better, by one lattice that ends with the largest value. Of many contacts it has
+    usual sums, and ends where it would not resolve them: shares are then a bound.
     """
     if number < 1:
         return np.where(values >= 0, 1.0, 0.0)
     one = one_asperity(model, quantity, h, _CELLS[other] // 4, number)
-    return one.shares_upto(values / quantity_of(quantity).scale(model.surface), _POINTS[other] // 8)
+    x, points = values / quantity_of(quantity).scale(model.surface), _POINTS[other] // 8
+    low, usual, step = one.span if one.low.size else (0.0, 0.0, 0.0)
+    if x.max() <= low or not one.low.size:
+        return np.where((x >= 0) & (x >= low), 1.0, 0.0)
+    end = float(np.clip(x.max(), low if np.isinf(step) else usual, max(usual, low + points * step)))
+    return one.upto(x, end, points) + one.none * (x >= 0)
 
 
 def one_asperity(model: Any, quantity: str, h: float, cells: int, number: float | None = None) -> OneAsperity:
@@ -222,7 +209,7 @@ def in_cells(
         own = wide * model.curvature.density(middle, MEAN_CURVATURE / radius)
     whole, which = np.bincount(which, p[order]), np.repeat(which, parts)  # each radius keeps its share
     own *= (whole / np.bincount(which, own))[which]
-    at = np.concatenate([left + _JUST * wide, left + wide])  # right of where contacts begin
+    at = np.concatenate([left + 1e-9 * wide, left + wide])  # right of where contacts begin
     nodes = HeightRule(at, 0 * at, rule.below, None if ratios is None else np.tile(radius, 2))
     low, high = np.split(nodes.terms(several, [h], model.grading, model.ways), 2)
     missing, size = 2 * p @ at_nodes - own @ (low + high), own @ (np.abs(low) + np.abs(high))
@@ -239,9 +226,9 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
         raise ValueError(
             f"quantity = {quantity!r}: give a sum that decreases with the separation, such as 'load'"
         )
-    h, z = normal_scores(model, quantity, load, apart=_APART, other=other)
-    x = np.interp(np.linspace(0, len(h) - 1, _TABLE), np.arange(len(h)), h)
-    smooth = np.maximum.accumulate(make_interp_spline(h, z, min(_DEGREE, len(h) - 1))(x))
+    h, z = normal_scores(model, quantity, load, apart=0.4, other=other)
+    x = np.interp(np.linspace(0, len(h) - 1, 8192), np.arange(len(h)), h)
+    smooth = np.maximum.accumulate(make_interp_spline(h, z, min(5, len(h) - 1))(x))
     x, upto = x[np.abs(smooth) < SCORES], ndtr(smooth[np.abs(smooth) < SCORES])
     again = partial(separation_law_of, model, load, quantity, other=True)
     return Law(x, upto, (-np.inf, np.inf), again)
@@ -278,19 +265,21 @@ def normal_scores(
     @cache
     def score(h: float) -> float:
         share = shares_upto(model, quantity, h, model.number, np.array([value]), other=other)
-        return float(np.clip(ndtri(np.clip(share[0], 0.0, 1.0)), -_HIGHEST, _HIGHEST))
+        return float(np.clip(ndtri(np.clip(share[0], 0.0, 1.0)), -SCORES - 0.5, SCORES + 0.5))
 
     spread = float(model.std(quantity, start) / model.slope(quantity, start))  # to first order
     places, step, moved = [start + other * spread / 7], wide * spread / 3, 1.0
     while score(places[-1]) < SCORES:  # far, where tails are heavy
-        places.append(places[-1] + step * _LONGER ** len(places))
-    while score(places[0]) > -SCORES and moved > _LEVEL and places[0] > LOWEST:
+        places.append(places[-1] + step * 1.25 ** len(places))
+    while (
+        score(places[0]) > -SCORES and moved > 1e-9 and places[0] > LOWEST
+    ):  # else the rest have no asperity
         places.insert(0, max(places[0] - step, LOWEST))
         moved = score(places[1]) - score(places[0])
     k = 1
     while k < len(places):
         left, right = places[k - 1], places[k]
-        if score(right) - score(left) > apart and right - left > _SMALLEST * spread:
+        if score(right) - score(left) > apart and right - left > 1e-3 * spread:
             places.insert(k, (left + right) / 2)
         else:
             k += 1

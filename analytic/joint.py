@@ -26,32 +26,15 @@ from analytic.piecewise import fitted
 from analytic.quadrature import panelled
 from analytic.surface import SUMMIT_SPREAD, SpectralMoments, Surface, check_positive
 
-_REACH = 10.0  # standard deviations of heights that count
-_DIRECT, _PANEL, _TERMS = 512, 0.5, 18  # distances that are integrated one by one; or interpolated
-
 ROOM, ATMOSPHERE = 293.15, 101325.0  # K, Pa
-_AT = 288.0  # K, of the mean free paths
 
 
 @dataclass(frozen=True, slots=True)
 class Gas:
-    """A gas in the gap.
+    """A gas in the gap; what is no finite number > 0 is a ValueError."""
 
-    Parameters
-    ----------
-    conductivity : float
-        W/(m K).
-    jump : float
-        Temperature-jump distance of both walls together, m.
-
-    Raises
-    ------
-    ValueError
-        If one is not a finite number > 0.
-    """
-
-    conductivity: float
-    jump: float
+    conductivity: float  # W/(m K)
+    jump: float  # temperature-jump distance of both walls together, m
 
     def __post_init__(self) -> None:
         check_positive("W/(m K)", **{"gas.conductivity": self.conductivity})
@@ -141,7 +124,7 @@ class Joint:
         t, p = self.temperature or ROOM, self.gas_pressure or ATMOSPHERE
         walls = 2 * (2 - accommodation) / accommodation
         jump = walls * 2 * heats / ((heats + 1) * prandtl) * path
-        return Gas(conductivity(t), jump * t / _AT * ATMOSPHERE / p)
+        return Gas(conductivity(t), jump * t / 288 * ATMOSPHERE / p)
 
     def gap(self, surface: Surface, heights: Any, moments: SpectralMoments | None = None) -> "Gap":
         """Return the gap conductance of a surface.
@@ -219,18 +202,18 @@ class Gap:
 def gap_integral(y: ArrayLike, m: float, order: int = 0) -> Array:
     """I(Y, M) to 1e-13, or a derivative of it by Y, in the shape of Y."""
     once, back = np.unique(np.asarray(y, dtype=np.float64), return_inverse=True)
-    if once.size <= _DIRECT:
+    if once.size <= 512:
         found = _integrals(once, m, order)
-    else:
-        edges = np.linspace(once[0], once[-1], math.ceil((once[-1] - once[0]) / _PANEL) + 1)
-        found = fitted(partial(_integrals, m=m, order=order), edges, _TERMS)(once)
+    else:  # to 1e-13
+        edges = np.linspace(once[0], once[-1], math.ceil((once[-1] - once[0]) / 0.5) + 1)
+        found = fitted(partial(_integrals, m=m, order=order), edges, 18)(once)
     return np.reshape(found[back], np.shape(y))
 
 
 def _integrals(y: Array, m: float, order: int) -> Array:
     """Each by Gauss-Legendre rules in panels: as fine as M from 0 on, and about Y."""
     near = m * 4.0 ** np.arange(math.ceil(-math.log(m, 4))) if m < 1 else np.empty(0)
-    about = np.maximum(y, 0.0) + np.linspace(-_REACH, _REACH, 5)[:, None]
+    about = np.maximum(y, 0.0) + np.linspace(-10, 10, 5)[:, None]  # standard deviations
     fine = np.maximum(np.append(0.0, near)[:, None], np.maximum(about[0], 0.0))
     x, w = panelled(np.sort(np.append(fine, np.maximum(about, 0.0), axis=0), axis=0))
     z, turned = x - y, HermiteE.basis(order)  # the derivatives of the Gaussian

@@ -27,9 +27,7 @@ from analytic.quantities import Quantity, quantity_of
 from analytic.roots import last_separations
 from analytic.surface import Surface
 
-LOWEST, _HIGHEST = -40.0, 1000.0  # separations that are looked at
-_RAREST = 1e-300  # share of heights above the highest separation that is looked at
-_TOGETHER, _SHARED = 12, 1e-12  # separations that share a rule, and least share that touches at the last
+LOWEST = -40.0  # separation that is looked at
 
 
 @dataclass(frozen=True)
@@ -109,7 +107,7 @@ class MeanModel:
         q = asked(self, quantity, h)
         if answer := answer_of(self, q):
             return answer.mean(self.alone, np.asarray(h, dtype=np.float64))
-        return self._unit(q) * self._mean(q, h)
+        return self._mean(q, h)
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
         """Rate at which the mean falls with the separation, per unit of h.
@@ -144,13 +142,13 @@ class MeanModel:
         if q.unloading and not self.ways.law.elastic:
             if q.base != "load":
                 raise ValueError(f"quantity = {quantity!r}: its slope is not known; give 'load_unloading'")
-            return q.exponent * self._unit(q) * self._mean(quantity_of("load_slope_unloading"), h)
+            return self.surface.sigma * self._mean(quantity_of("load_slope_unloading"), h)
         hertz = self.ways.law.hertz and q.exponent >= 1
         if hertz or isinstance(self.heights, MeasuredHeights):  # no asperity jumps
-            return self._unit(q) * self._in_parts(h, partial(self._mean_by, q, slope=True))
+            return self._mean(q, h, slope=True)
         if q.base == "contacts":
-            return self._unit(q) * self.heights.pdf(np.asarray(h, dtype=np.float64))
-        return self._unit(q) * fall_of(partial(self._mean, q), h)
+            return self.number * self.heights.pdf(np.asarray(h, dtype=np.float64))
+        return fall_of(partial(self._mean, q), h)
 
     def share(self, piece: int, h: ArrayLike) -> Array:
         """Mean share of the contacts to which a piece of the law applies, such as those that have yielded.
@@ -210,8 +208,8 @@ class MeanModel:
         rough = self._rule(grid[:1], power=1)  # to a percent, but in tails
         with np.errstate(divide="ignore", invalid="ignore"):
             about = np.log(rough.mean(rough.terms([q.name], grid, self.grading, self.ways)))
-            targets = np.log(target / self._unit(q))
-            return last_separations(lambda h: np.log(self._mean(q, h)), targets, grid, about, quantity)
+            about += np.log(self.number * q.scale(self.surface))
+            return last_separations(lambda h: np.log(self._mean(q, h)), np.log(target), grid, about, quantity)
 
     def rule(
         self, separations: ArrayLike, quantities: Sequence[str] = ("load",), cuts: Cuts | None = None
@@ -236,9 +234,14 @@ class MeanModel:
             h, self.grading, self.heights, self.curvature, branches=branches, cuts=cuts, **powers
         )
 
-    def _mean(self, q: Quantity, h: ArrayLike) -> Array:
-        """Mean of what one asperity adds, over the scale, at separations of any shape."""
-        return self._in_parts(h, partial(self._mean_by, q))
+    def _mean(self, q: Quantity, h: ArrayLike, *, slope: bool = False) -> Array:
+        """Mean of a sum of asperities; or how fast it falls, as long as none jumps."""
+
+        def of_one(h: Array) -> Array:
+            rule = self._rule(h, [q.name], power=1, exponent=q.exponent + 1)  # there may be no variance
+            return rule.mean(rule.terms([q.name], h, self.grading, self.ways, slope=slope))
+
+        return self.number * q.scale(self.surface) * self._in_parts(h, of_one)
 
     def _in_parts(self, h: ArrayLike, function: Callable[[Array], Array]) -> Array:
         """Return what a function gives for a few separations at a time, which may share a rule."""
@@ -248,24 +251,20 @@ class MeanModel:
         parts, order = [], np.argsort(flat)
         touching = self.heights.sf(flat[order])
         while order.size:  # the lowest hardly needs what a rule leaves out
-            near = np.count_nonzero(touching >= _SHARED * touching[0])
-            few = min(near, 1 if isinstance(self.heights, MeasuredHeights) else _TOGETHER)
+            near = np.count_nonzero(touching >= 1e-12 * touching[0])
+            few = min(near, 1 if isinstance(self.heights, MeasuredHeights) else 12)
             parts.append(order[:few])
             order, touching = order[few:], touching[few:]
         found = [function(flat[few]) for few in parts]
         rows = np.concatenate(found)[np.argsort(np.concatenate(parts))] if parts else flat
         return np.asarray(rows.reshape(np.shape(h) + rows.shape[1:]))
 
-    def _mean_by(self, q: Quantity, h: Array, slope: bool = False) -> Array:
-        rule = self._rule(h, [q.name], power=1, exponent=q.exponent + 1)  # there may be no variance
-        return rule.mean(rule.terms([q.name], h, self.grading, self.ways, slope=slope))
-
     def _grid(self, q: Quantity) -> Array:
         """Separations from where all touches to where probabilities underflow, or the highest height.
 
         The lowest is that of the turn, or above it one that has no negative modulus.
         """
-        top, low = min(float(self.heights.isf(np.array(_RAREST), 0.0)), _HIGHEST), LOWEST
+        top, low = min(float(self.heights.isf(np.array(1e-300), 0.0)), 1000.0), LOWEST
         near = min(top, 12.0)
         if not self.ways.law.elastic:
             s = np.linspace(max(self.heights.support[0], -REACH), near, 4001)
@@ -275,6 +274,3 @@ class MeanModel:
         far = np.geomspace(near, top, 25)[1:] if top > near else np.empty(0)
         grid = np.concatenate([np.linspace(LOWEST, -4, 10)[:-1], np.linspace(-4, near, 41), far])
         return np.concatenate([[low], grid[grid > low]])
-
-    def _unit(self, q: Quantity) -> float:
-        return self.number * q.scale(self.surface)

@@ -120,37 +120,30 @@ LAW_QUANTITIES = _by_name(
     ),
 )  # fmt: skip
 
-UNLOADING = {
-    f"{name}_unloading": replace(
-        q, name=f"{name}_unloading", long_name=f"{q.long_name}, unloading", unloading=name
-    )
-    for name, q in {**QUANTITIES, **LAW_QUANTITIES}.items()
-    if name != "yielded"
-}
+
+def _unloading(q: Quantity) -> Quantity:
+    """Return the same on the way back from the lowest separation."""
+    name, of = f"{q.name}_unloading", q.of and f"{q.of}_unloading"
+    return replace(q, name=name, long_name=f"{q.long_name}, unloading", of=of, unloading=q.name)
+
+
+UNLOADING = _by_name(
+    *(_unloading(q) for q in (*QUANTITIES.values(), *LAW_QUANTITIES.values()) if q.name != "yielded")
+)
 
 # The separation of the bodies, where asperities press each other down.
-SEPARATIONS = {
-    f"nominal_separation{way}": Quantity(
-        f"nominal_separation{way}",
-        f"nominal separation d/sigma{way and ', unloading'}",
-        "1", 1.5, 1, 0.5, 1,
-        unloading=way and "nominal_separation",
-    )
-    for way in ("", "_unloading")
-}  # fmt: skip
+_NOMINAL = Quantity("nominal_separation", "nominal separation d/sigma", "1", 1.5, 1, 0.5, 1)
+SEPARATIONS = _by_name(_NOMINAL, _unloading(_NOMINAL))
 
 # Of a joint with gas in its gap, per nominal area: what the gas conducts, and spots and gas together.
-JOINT = {
-    f"{name}{way}": Quantity(
-        f"{name}{way}", f"{long_name}{way and ', unloading'}", "W/(m^2 K)", 0.5, 0, 0.5, 4,
-        of=f"conductance_si{way}", unloading=way and name, words=name.replace("_", " "), symbol=symbol,
+_GAP, _ALL = (
+    Quantity(
+        f"{name}_conductance", f"conductance of the {what}, per nominal area", "W/(m^2 K)",
+        0.5, 0, 0.5, 4, of="conductance_si", words=f"{name} conductance", symbol=f"h_{name[0]}",
     )
-    for name, long_name, symbol in (
-        ("gap_conductance", "conductance of the gas in the gap, per nominal area", "h_g"),
-        ("joint_conductance", "conductance of the joint (spots beside gas), per nominal area", "h_j"),
-    )
-    for way in ("", "_unloading")
-}  # fmt: skip
+    for name, what in (("gap", "gas in the gap"), ("joint", "joint (spots beside gas)"))
+)  # fmt: skip
+JOINT = _by_name(_GAP, _unloading(_GAP), _ALL, _unloading(_ALL))
 
 # What follows of conductances at a given load.
 RESISTANCES = _by_name(
@@ -163,13 +156,7 @@ RESISTANCES = _by_name(
 )  # fmt: skip
 
 # All that an ensemble can hold.
-ALL_QUANTITIES = {
-    **QUANTITIES,
-    **LAW_QUANTITIES,
-    **UNLOADING,
-    **SEPARATIONS,
-    **JOINT,
-}
+ALL_QUANTITIES = {**QUANTITIES, **LAW_QUANTITIES, **UNLOADING, **SEPARATIONS, **JOINT}
 
 NOT_SUMS = (*JOINT, *RESISTANCES)  # over asperities
 _KNOWN = {**ALL_QUANTITIES, **PER_AREA, **RESISTANCES}

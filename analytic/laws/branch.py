@@ -23,9 +23,6 @@ from analytic.quantities import quantity_of
 from analytic.resolution import stretches
 from analytic.roots import sign_changes
 
-_ROUNDING = 1e-9  # of a law that goes on smoothly
-_SAME = 8  # spacings of floating-point numbers between heights that are not told apart
-
 
 @dataclass(frozen=True)
 class Regimes:
@@ -162,7 +159,7 @@ class Branch:
         for piece, limit in enumerate([np.zeros_like(e), *self.limits(e)]):
             with np.errstate(all="ignore"):  # without a modulus nothing yields, at no limit
                 after, before = (self.value(quantity, j, 0 * e, limit, e) for j in (piece, max(piece - 1, 0)))
-            if np.any(after < (before * (1 - _ROUNDING) if piece else 0.0)):
+            if np.any(after < (before * (1 - 1e-9) if piece else 0.0)):
                 return piece
         return None
 
@@ -228,7 +225,7 @@ class Branch:
         edge = np.concatenate([start, np.full(h.size, high), edge])
         anchors = np.unique([*start, *h, *grading.breaks, high])
         nearest = anchors[np.searchsorted((anchors[1:] + anchors[:-1]) / 2, edge)]
-        same = _SAME * np.spacing(np.maximum(np.abs(edge), np.abs(h[which])))  # found from ``s - h``
+        same = 8 * np.spacing(np.maximum(np.abs(edge), np.abs(h[which])))  # found from ``s - h``
         edge = np.maximum(np.where(np.abs(nearest - edge) <= same, nearest, edge), start[which])
         order = np.lexsort((edge, which))
         which, edge, same = which[order], edge[order], same[order]

@@ -12,9 +12,7 @@ from numpy.typing import ArrayLike
 from analytic.arrays import Array, hold
 from analytic.surface import Surface, check_positive
 
-_NEGLIGIBLE = 1e-18  # weight of an image
 _ALTERNATING = 24  # terms of an alternating sum, whose error is 5.8 to that power
-_SMALLEST = 1e-100  # radius over thickness
 _REACH = np.geomspace(1e-4, 1e4, 401)  # radii over thicknesses at which a pole is looked for
 
 
@@ -180,7 +178,7 @@ def layered_resistivity(
     """
     radius, thickness = np.broadcast_arrays(radius, thickness)
     side = np.where(np.real(radius) < 0, -1.0, 1.0)
-    smallest = _SMALLEST * thickness
+    smallest = 1e-100 * thickness
     over = 2 * thickness / np.where(np.abs(radius) > smallest, side * radius, smallest)
     images = np.zeros_like(over)
     for n, weight in _images((conductivity - under) / (conductivity + under)):
@@ -210,7 +208,7 @@ def _images(ratio: float) -> tuple[tuple[int, float], ...]:
         c = b - c
         b *= (k + m) * (k - m) / ((k + 0.5) * (k + 1))
         n, times = k + 1, 1.0
-        while (weight := times * size**n) > _NEGLIGIBLE:
+        while (weight := times * size**n) > 1e-18:
             found[n] = found.get(n, 0.0) + (c / total) * weight * (1.0 if ratio > 0 else -1.0)
             if ratio < 0:
                 break
