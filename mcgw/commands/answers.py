@@ -18,22 +18,13 @@ def show(
 ) -> bool | None:
     """Show the contents of an ensemble file, the progress of its run, or the plan of a scene.
 
-    Parameters
-    ----------
-    file : FILE
-        file of an ensemble or of a sweep (HDF5); or a scene (TOML), for its plan
-    scene
-        print the scene as TOML, ready to run again
-    digest
-        print the digest of scene and data
-    plan
-        FILE is a scene: print what would be drawn and how long it takes
-    verify
-        verify every number by its checksum
+    file (FILE): file of an ensemble or of a sweep (HDF5); or a scene (TOML), for its plan
+    scene: print the scene as TOML, ready to run again
+    digest: print the digest of scene and data
+    plan: FILE is a scene: print what would be drawn and how long it takes
+    verify: verify every number by its checksum
 
-    Examples
-    --------
-    mcgw show demo.h5
+    example: mcgw show demo.h5
     """
     from mcgw.errors import StoreError
     from mcgw.reports.text import progress_of, summary, table_of
@@ -85,26 +76,15 @@ def solve(
 ) -> None:
     """Find separation, area, stiffness, contacts and conductance at given loads.
 
-    Parameters
-    ----------
-    pressure : P
-        load per nominal area: Pa, kPa, MPa, GPa
-    load : F
-        mN, N, kN, MN
-    area : A
-        real area: um^2, mm^2, cm^2
-    area_fraction : A
-        real over nominal area: 0.01 or 1%
-    nominal_separation : D
-        separation of the bodies with an interaction, over sigma
-    surfaces : M
-        number of surfaces to solve; default: that of the scene
-    scatter : S
-        also find the number of asperities for this scatter of specimens: 1%
+    pressure (P): load per nominal area: Pa, kPa, MPa, GPa
+    load (F): mN, N, kN, MN
+    area (A): real area: um^2, mm^2, cm^2
+    area_fraction (A): real over nominal area: 0.01 or 1%
+    nominal_separation (D): separation of the bodies with an interaction, over sigma
+    surfaces (M): number of surfaces to solve; default: that of the scene
+    scatter (S): also find the number of asperities for this scatter of specimens: 1%
 
-    Examples
-    --------
-    mcgw solve runs/demo.toml --pressure 100kPa 1MPa --csv solved.csv
+    example: mcgw solve runs/demo.toml --pressure 100kPa 1MPa --csv solved.csv
     """
     from analytic import quantity_of
     from mcgw.ensemble.solution import solve as solved
@@ -146,28 +126,16 @@ def elastic(
 ) -> None:
     """Find mean area, stiffness, conductance and gap of elastic surfaces from few boundary-element solves.
 
-    Parameters
-    ----------
-    source : SCENE|MAP
-        a scene with m0, m2, m4 or from a fit (.toml); or a height map, for its spectrum
-    pressure : P
-        load per nominal area: kPa, MPa, GPa
-    separation : D
-        mean gap of the deformed surface: nm, um
-    E_star : E
-        composite modulus of a map: MPa, GPa
-    rel_err : X
-        relative half width of the 95 % interval, for the worst quantity
-    solves : N
-        instead of --rel-err: maximum number of boundary-element solves
-    seed : K
-        seed of the maps
-    output : FILE
-        write each solve as a line (.jsonl), to resume from; default: no file
+    source (SCENE|MAP): a scene with m0, m2, m4 or from a fit (.toml); or a height map, for its spectrum
+    pressure (P): load per nominal area: kPa, MPa, GPa
+    separation (D): mean gap of the deformed surface: nm, um
+    E_star (E): composite modulus of a map: MPa, GPa
+    rel_err (X): relative half width of the 95 % interval, for the worst quantity
+    solves (N): instead of --rel-err: maximum number of boundary-element solves
+    seed (K): seed of the maps
+    output (FILE): write each solve as a line (.jsonl), to resume from; default: no file
 
-    Examples
-    --------
-    mcgw elastic spectral.toml --pressure 1MPa --rel-err 0.05 -o solves.jsonl
+    example: mcgw elastic spectral.toml --pressure 1MPa --rel-err 0.05 -o solves.jsonl
     """
     from mcgw.elasticity.elastic import elastic as solved
     from mcgw.maps.heights_files import read_map

@@ -1,8 +1,8 @@
 """A command from its function: parser, help, completion, checks of outputs and exit code.
 
 Parameters before ``*`` are typed by place, the others are options. Their types and defaults are those of the
-signature, with kinds of `mcgw.commands.kinds`; the docstring has their words, in place of types what stands
-for their values, and an example.
+signature, with kinds of `mcgw.commands.kinds`. The docstring says what the command does, then has a line for
+each parameter, with what stands for its value, as ``csv (FILE): also write the table``, and an example.
 """
 
 import argparse
@@ -25,7 +25,7 @@ _HOMES = {  # commands in the order of work, by the files in which they stand; a
 }  # fmt: skip
 _OTHERS = {*_HOMES.values(), "declared", "kinds", "outputs"}
 Command = Callable[..., bool | None]
-_WORDS = re.compile(r"(\w+)(?: : (.+))?\n((?:    .+\n?)+)")
+_WORDS = re.compile(r"^(\w+)(?: \((.+?)\))?: (.+(?:\n    .+)*)", re.MULTILINE)  # of a parameter
 
 
 def all_commands() -> tuple[str, ...]:
@@ -81,13 +81,13 @@ def parser_of(names: Sequence[str] = ()) -> argparse.ArgumentParser:
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     for name in names or all_commands():
         function = getattr(import_module(f"mcgw.commands.{_HOMES.get(name, name)}"), name)
-        about, *sections = re.split(r"\n\n(?:Parameters|Examples)\n-+\n", cleandoc(function.__doc__))
-        about = f"{about[0].lower()}{' '.join(about.split())[1:]}"
-        example = f"example: {sections[-1]}" if sections else None
+        text, mark, example = cleandoc(function.__doc__).partition("\n\nexample: ")
+        about = " ".join(_WORDS.sub("", text).split())
+        about = f"{about[0].lower()}{about[1:]}"
         brief = about.partition(". ")[0].rstrip(".")
-        sub = commands.add_parser(name, help=brief, description=about, epilog=example)
+        sub = commands.add_parser(name, help=brief, description=about, epilog=(mark + example).strip())
         sub._negative_number_matcher = re.compile(r"-\.?\d")  # no option: a value such as -1MPa
-        _add_arguments(sub, function, sections[0] if sections[1:] else "")
+        _add_arguments(sub, function, text)
         amount = sub.add_mutually_exclusive_group()
         for flags, const, told in (
             (("-q", "--quiet"), QUIET, "print only errors and requested output"),

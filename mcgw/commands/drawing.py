@@ -61,14 +61,9 @@ def run(
     The first run on a machine compiles the loops that it needs, which takes about 12 s; mcgw warm compiles
     all of them in advance.
 
-    Parameters
-    ----------
-    output : FILE.h5
-        the ensemble
+    output (FILE.h5): the ensemble
 
-    Examples
-    --------
-    mcgw run runs/demo.toml -o demo.h5
+    example: mcgw run runs/demo.toml -o demo.h5
     """
     from numba import get_num_threads
 
@@ -144,23 +139,14 @@ def sweep(
 ) -> None:
     """Draw many scenes at once on the same surfaces: means, deviations, paired ratios; resumes.
 
-    Parameters
-    ----------
-    scene : SCENE
-        TOML file with what all points have in common
-    over : KEY=VALUES
-        a key of the scene and its values, such as ensemble.n_asperities=1e4,1e5 or grading.gamma=0.2:2:10
-        (A:B:N for N of them from A to B, at equal steps); repeat for more axes
-    zip
-        combine the first values of all keys into one point, and so on
-    plan
-        print what would be drawn and how long it takes, without drawing
-    output : FILE.h5
-        the sweep
+    scene (SCENE): TOML file with what all points have in common
+    over (KEY=VALUES): a key of the scene and its values, such as ensemble.n_asperities=1e4,1e5 or
+        grading.gamma=0.2:2:10 (A:B:N for N of them from A to B, at equal steps); repeat for more axes
+    zip: combine the first values of all keys into one point, and so on
+    plan: print what would be drawn and how long it takes, without drawing
+    output (FILE.h5): the sweep
 
-    Examples
-    --------
-    mcgw sweep runs/demo.toml --over grading.gamma=0.2:2:10 -o gamma.h5
+    example: mcgw sweep runs/demo.toml --over grading.gamma=0.2:2:10 -o gamma.h5
     """
     from mcgw.jobs.running import sweep as drawn
     from mcgw.reports.plan import sweep_plan_text
@@ -184,14 +170,9 @@ def sweep(
 def merge(file: Annotated[Path, kinds.file_out("an ensemble", grows=True)]) -> None:
     """Merge the blocks of a run or sweep that several jobs drew (--shard i/n) into one file.
 
-    Parameters
-    ----------
-    file : FILE
-        the file to make, as given to run -o
+    file (FILE): the file to make, as given to run -o
 
-    Examples
-    --------
-    mcgw merge demo.h5
+    example: mcgw merge demo.h5
     """
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.formats.files import state_of

@@ -48,54 +48,33 @@ def fit(
 ) -> None:
     """Fit summit density, radius and spread to measured height maps, and write a scene.
 
-    Parameters
-    ----------
-    map : MAP
-        .npy, .h5 or text (SDF, X3P, ... with the extra maps); several of one surface are pooled; or profiles
-        of one surface (text with x and z), recognised by their shape
-    iso : NUMBER
-        no map, but numbers that an instrument states: Sq=0.8um Sdq=0.12 Spc=0.043/um (or Spd; Rq, Rdq, Rpd,
-        RSm of profiles; Sal autocorrelation=gaussian; pruning=0 if all peaks counted)
-    cutoff : LENGTH
-        shortest wavelength of the roughness, such as 5um (Gaussian filter, ISO 16610-61); or none
-    long_cutoff : LENGTH
-        longest wavelength of the roughness, such as 80um; default: no limit
-    form
-        form to remove
-    missing
-        missing points are filled from the edges of their holes; mask: ignore them and their neighbours;
+    map (MAP): .npy, .h5 or text (SDF, X3P, ... with the extra maps); several of one surface are pooled; or
+        profiles of one surface (text with x and z), recognised by their shape
+    iso (NUMBER): no map, but numbers that an instrument states: Sq=0.8um Sdq=0.12 Spc=0.043/um (or Spd; Rq,
+        Rdq, Rpd, RSm of profiles; Sal autocorrelation=gaussian; pruning=0 if all peaks counted)
+    cutoff (LENGTH): shortest wavelength of the roughness, such as 5um (Gaussian filter, ISO 16610-61); or
+        none
+    long_cutoff (LENGTH): longest wavelength of the roughness, such as 80um; default: no limit
+    form: form to remove
+    missing: missing points are filled from the edges of their holes; mask: ignore them and their neighbours;
         fill: use them; auto: mask if half of the other points remain
-    spikes
-        remove points that stand out
-    lines
-        remove offsets between rows or columns, as from a line scan
-    trim : N
-        number of points to remove along each edge
-    missing_value : V
-        number that stands for a missing point, in the unit of the file, such as -9999
-    use
-        estimate used in the scene; auto: caps if all summits have one radius, otherwise summits
-    heights
-        gaussian; nayak: from the moments, each summit with its own radius; or the measured heights,
+    spikes: remove points that stand out
+    lines: remove offsets between rows or columns, as from a line scan
+    trim (N): number of points to remove along each edge
+    missing_value (V): number that stands for a missing point, in the unit of the file, such as -9999
+    use: estimate used in the scene; auto: caps if all summits have one radius, otherwise summits
+    heights: gaussian; nayak: from the moments, each summit with its own radius; or the measured heights,
         resampled (table), as they are (measured), or with their radii (summits)
-    E_star : E
-        composite modulus; default: 100 GPa
-    nominal_area : AREA
-        nominal area of the scene, such as 1cm^2; default: that of the map
-    parts : N
-        number of sub-areas along each axis, to estimate errors
-    summits : CSV
-        write every summit: position, height, radius, curvatures
-    tiles : CSV
-        write the estimates of each sub-area
-    picture : PNG
-        also draw the map before and after, its summits, their distributions, and moments against cutoff
-    output : SCENE
-        TOML file
+    E_star (E): composite modulus; default: 100 GPa
+    nominal_area (AREA): nominal area of the scene, such as 1cm^2; default: that of the map
+    parts (N): number of sub-areas along each axis, to estimate errors
+    summits (CSV): write every summit: position, height, radius, curvatures
+    tiles (CSV): write the estimates of each sub-area
+    picture (PNG): also draw the map before and after, its summits, their distributions, and moments against
+        cutoff
+    output (SCENE): TOML file
 
-    Examples
-    --------
-    mcgw fit map.h5 --cutoff 5um -o fitted.toml
+    example: mcgw fit map.h5 --cutoff 5um -o fitted.toml
     """
     from mcgw.formats.files import together
     from mcgw.maps.fit import Fit
@@ -216,28 +195,17 @@ def surface(
 ) -> None:
     """Write one surface of an ensemble, or a Gaussian map, as a height map.
 
-    Parameters
-    ----------
-    surface : I
-        number of the surface
-    shape : N
-        columns of a square map, or COLUMNSxROWS
-    width : LENGTH
-        extent of the map along x, such as 200um; default: that of the nominal area, a square
-    periodic
-        let caps reach across the edges
-    from_spectrum : LIST
-        a Gaussian map instead: rms=1um,long=100um,short=5um[,hurst=0.8], or m0=..,m2=..,m4=.. (SI)
-    pixel : LENGTH
-        pixel of a Gaussian map, such as 0.5um
-    seed : K
-        seed of a Gaussian map
-    output : FILE
-        file ending in .npy, .h5 or .sdf
+    surface (I): number of the surface
+    shape (N): columns of a square map, or COLUMNSxROWS
+    width (LENGTH): extent of the map along x, such as 200um; default: that of the nominal area, a square
+    periodic: let caps reach across the edges
+    from_spectrum (LIST): a Gaussian map instead: rms=1um,long=100um,short=5um[,hurst=0.8], or
+        m0=..,m2=..,m4=.. (SI)
+    pixel (LENGTH): pixel of a Gaussian map, such as 0.5um
+    seed (K): seed of a Gaussian map
+    output (FILE): file ending in .npy, .h5 or .sdf
 
-    Examples
-    --------
-    mcgw surface runs/demo.toml --surface 3 -o map.h5
+    example: mcgw surface runs/demo.toml --surface 3 -o map.h5
     """
     import numpy as np
 

@@ -27,18 +27,11 @@ Preset = Annotated[str, Kind(choices=tuple(PRESETS), words=_WORDS)]
 def init(preset: Preset = "demo", *, output: Path | None = None, schema: bool = False) -> None:
     """Write a commented scene to start from.
 
-    Parameters
-    ----------
-    preset : PRESET
-        its name
-    output : SCENE
-        default: PRESET.toml in the current folder
-    schema
-        also write scene.schema.json, with which editors complete keys
+    preset (PRESET): its name
+    output (SCENE): default: PRESET.toml in the current folder
+    schema: also write scene.schema.json, with which editors complete keys
 
-    Examples
-    --------
-    mcgw init coating -o mine.toml && mcgw run mine.toml -o mine.h5
+    example: mcgw init coating -o mine.toml && mcgw run mine.toml -o mine.h5
     """
     from importlib.resources import files
 
@@ -67,9 +60,7 @@ def init(preset: Preset = "demo", *, output: Path | None = None, schema: bool = 
 def warm() -> None:
     """Compile all loops now, once for this machine, so that later runs only load them.
 
-    Examples
-    --------
-    mcgw warm
+    example: mcgw warm
     """
     import os
 
@@ -105,14 +96,9 @@ def warm() -> None:
 def completion(shell: Literal["bash", "zsh", "fish"]) -> None:
     """Print a shell script that completes commands, options and files.
 
-    Parameters
-    ----------
-    shell : SHELL
-        bash, zsh, fish
+    shell (SHELL): bash, zsh, fish
 
-    Examples
-    --------
-    mcgw completion bash
+    example: mcgw completion bash
     """
     from argparse import _SubParsersAction
     from pathlib import Path

@@ -18,18 +18,11 @@ def compare(
 ) -> bool:
     """Compare an ensemble or a sweep with theory: verdict and figure (exit code 1 if they disagree).
 
-    Parameters
-    ----------
-    output : PNG
-        figure (.png, .pdf, .svg, ...)
-    csv : FILE
-        also write the table, of at most 100 separations
-    laws
-        also test the values of single surfaces against their exact distribution
+    output (PNG): figure (.png, .pdf, .svg, ...)
+    csv (FILE): also write the table, of at most 100 separations
+    laws: also test the values of single surfaces against their exact distribution
 
-    Examples
-    --------
-    mcgw compare demo.h5 -o demo.png
+    example: mcgw compare demo.h5 -o demo.png
     """
     from mcgw.figures.panels import save
     from mcgw.figures.studies import comparison_figure
@@ -58,14 +51,9 @@ def converge(
 ) -> bool:
     """Test statistical convergence: slopes, coverage, variance, skewness, ... (exit code 1 if it fails).
 
-    Parameters
-    ----------
-    output : DIR
-        folder of the figure
+    output (DIR): folder of the figure
 
-    Examples
-    --------
-    mcgw converge runs/demo.toml -o out
+    example: mcgw converge runs/demo.toml -o out
     """
     from mcgw.figures.panels import save
     from mcgw.figures.studies import convergence_figure
@@ -88,16 +76,10 @@ def tradeoff(
 ) -> None:
     """Measure what each answer costs, how exact it is, and recommend a way.
 
-    Parameters
-    ----------
-    output : DIR
-        folder of tables and figure
-    seconds : TIME
-        time limit, s, or with a unit, such as "5 min"
+    output (DIR): folder of tables and figure
+    seconds (TIME): time limit, s, or with a unit, such as "5 min"
 
-    Examples
-    --------
-    mcgw tradeoff runs/demo.toml -o out
+    example: mcgw tradeoff runs/demo.toml -o out
     """
     from mcgw.figures.panels import save
     from mcgw.figures.studies import tradeoff_figure
@@ -122,16 +104,11 @@ def report(
 ) -> None:
     """Write a report: one HTML page with figures, tables, verdict and provenance.
 
-    Parameters
-    ----------
-    output : HTML
-        the page
-    pressures : P
-        nominal pressures of the answers: kPa, MPa, GPa; default: round ones that the separations span
+    output (HTML): the page
+    pressures (P): nominal pressures of the answers: kPa, MPa, GPa; default: round ones that the separations
+        span
 
-    Examples
-    --------
-    mcgw report demo.h5 -o demo.html
+    example: mcgw report demo.h5 -o demo.html
     """
     from mcgw.formats.files import write_whole
     from mcgw.reports.html import report_html
@@ -155,24 +132,14 @@ def figures(
 ) -> None:
     """Draw Figures 1-6 of the paper with Monte-Carlo points, and some more; or the figures of a scene.
 
-    Parameters
-    ----------
-    output : DIR
-        folder
-    scene : SCENE
-        draw this scene beside its homogeneous reference instead
-    only : NAME
-        only these figures; default: all that apply
-    format : FORMAT
-        png, pdf, svg, ...; default: png
-    list
-        print the names of all figures without drawing
-    csv
-        also write the numbers of each figure
+    output (DIR): folder
+    scene (SCENE): draw this scene beside its homogeneous reference instead
+    only (NAME): only these figures; default: all that apply
+    format (FORMAT): png, pdf, svg, ...; default: png
+    list: print the names of all figures without drawing
+    csv: also write the numbers of each figure
 
-    Examples
-    --------
-    mcgw figures --scene mine.toml --only figure-2 equal-load -o figures
+    example: mcgw figures --scene mine.toml --only figure-2 equal-load -o figures
     """
     from mcgw.figures.catalogue import CATALOGUE, figures_of, of_paper
     from mcgw.figures.compared import Compared
@@ -219,29 +186,18 @@ def export(
 ) -> None:
     """Write pressure, conductance or stiffness as a table for a finite-element program.
 
-    Parameters
-    ----------
-    source : SCENE_OR_FILE
-        scene (TOML), whose surfaces are drawn as needed; or an ensemble file (HDF5)
-    to
-        the program; json: one file with all columns against the gap in SI units, and their origin
-    table
-        the quantity and its argument
-    points : N
-        number of rows
-    pressures : P
-        nominal pressures, such as 10kPa:20MPa:30; default: those that the separations of the scene span
-    quantile : Q
-        quantiles over the surfaces, besides the mean; default: 0.05 and 0.95
-    units
-        units of the files
-    output : FILE
-        file of the mean: .inp, for moose .csv, for comsol .txt, for json .json; quantiles and a joint table
-        go beside it
+    source (SCENE_OR_FILE): scene (TOML), whose surfaces are drawn as needed; or an ensemble file (HDF5)
+    to: the program; json: one file with all columns against the gap in SI units, and their origin
+    table: the quantity and its argument
+    points (N): number of rows
+    pressures (P): nominal pressures, such as 10kPa:20MPa:30; default: those that the separations of the scene
+        span
+    quantile (Q): quantiles over the surfaces, besides the mean; default: 0.05 and 0.95
+    units: units of the files
+    output (FILE): file of the mean: .inp, for moose .csv, for comsol .txt, for json .json; quantiles and a
+        joint table go beside it
 
-    Examples
-    --------
-    mcgw export mine.toml --to calculix --units mm-N-s -o contact.inp
+    example: mcgw export mine.toml --to calculix --units mm-N-s -o contact.inp
     """
     from mcgw.exports.programs import PROGRAMS
     from mcgw.exports.writing import export as exported, files_of_export
