@@ -12,7 +12,6 @@ from analytic import Gaussian, Nayak
 from analytic.arrays import Marks
 from mcgw.figures.panels import FigureData, Panel, words
 from mcgw.figures.style import HOMOGENEOUS, MARKED, MISSING, SAMPLE, THEORY, look, prefixed
-from mcgw.maps.estimates import moments_of
 from mcgw.maps.fit import Fit
 from mcgw.maps.form import smooth
 from mcgw.maps.preparation import Prepared
@@ -79,7 +78,7 @@ def _draw_moments(ready: Prepared, axis: Any) -> None:
     cutoffs, rows = np.geomspace(first, max(last, 1.01 * first), 8), []
     with suppress(ValueError):  # the filter leaves nothing of the map
         for cutoff in cutoffs:
-            m = moments_of(summit_sums_of(smooth(ready.levelled, float(cutoff)), across=1))
+            m = summit_sums_of(smooth(ready.levelled, float(cutoff)), across=1).moments
             rows.append((m.m0, m.m2, m.m4))
     unit, prefix = prefixed(float(cutoffs[len(rows) // 2]))
     axis.set_yscale("log")

@@ -11,10 +11,9 @@ from numpy.polynomial.legendre import leggauss
 from scipy.optimize import brentq
 from scipy.special import ndtr, stdtrit
 
-from analytic import SpectralMoments
 from analytic.arrays import Array
 from mcgw.formats.table import Column, Table
-from mcgw.maps.summit_sums import SUMS, Summits
+from mcgw.maps.summit_sums import Summits
 from mcgw.maps.waves import Uncertain, Waves, uncertain
 
 SUMMITS = ("eta", "radius", "sigma")
@@ -95,24 +94,12 @@ def jackknife(statistic: Callable[..., Array], *counted: Summits) -> Array:
     return np.column_stack([statistic(*counted), errors * stdtrit(n - 1, ndtr(2.0)) / 2])
 
 
-def mean_squares(counted: Summits) -> dict[str, float]:
-    """Means over the map, by the names of `mcgw.maps.summit_sums.SUMS`."""
-    sums = counted.sums.sum(axis=1)
-    return dict(zip(SUMS[1:], (sums[1:] / sums[0]).tolist(), strict=True))
-
-
-def moments_of(counted: Summits) -> SpectralMoments:
-    """Moments, averaged over both axes."""
-    m = mean_squares(counted)
-    return SpectralMoments(m["z2"] - m["z"] ** 2, (m["slope_x"] + m["slope_y"]) / 2, m["bend"])
-
-
 def by_moments(counted: Summits) -> dict[str, tuple[float, float]]:
     """m0, m2, m4, alpha, the summits of an isotropic Gaussian surface that has these, and the skewness."""
     names = ("m0", "m2", "m4", "alpha", *SUMMITS)
 
     def found(t: Summits) -> Array:
-        moments, m = moments_of(t), mean_squares(t)
+        moments, m = t.moments, t.mean_squares
         third = m["z3"] - 3 * m["z"] * m["z2"] + 2 * m["z"] ** 3
         return np.array([*(getattr(moments, name) for name in names), third / moments.m0**1.5])
 

@@ -20,8 +20,6 @@ from mcgw.maps.estimates import (
     by_moments,
     by_summits,
     estimates_table,
-    mean_squares,
-    moments_of,
     roughness_of,
     visible,
 )
@@ -204,7 +202,7 @@ def fit_prepared(ready: Prepared) -> Fit:
         raise ValueError(f"the map has no summit; give a larger map or a shorter cutoff{form_too}")
     if number < _A_LITTLE * across**2:
         counted = count(min(across, max(math.isqrt(number // _A_LITTLE), 3)))
-    moments = moments_of(counted)
+    moments = counted.moments
     if not (moments.m2 > SMALLEST and moments.sigma > 0):  # alpha contains its square
         raise ValueError(
             f"m0 = {moments.m0:.3g} m^2, m2 = {moments.m2:.3g}, m4 = {moments.m4:.3g} 1/m^2: no surface has "
@@ -232,7 +230,7 @@ def fit_prepared(ready: Prepared) -> Fit:
     if found := estimates.get("caps"):
         shown = visible(found.overlap, blur / math.sqrt(2 * found.radius.value * found.sigma.value))
     inside = (slice(None) if used.periodic else slice(EDGE, -EDGE),) * 2
-    squares = mean_squares(counted)
+    squares = counted.mean_squares
     x, y = ((a - b) / 2 for a, b in zip(ready.levelled.size, used.size, strict=True))  # of equal margins
     return Fit(
         estimates=estimates,

@@ -93,19 +93,18 @@ def cautions_of_several(fit: Fit, fits: Sequence[Fit], use: str = "auto") -> lis
         for line in each.cautions
         if line.partition(":")[0] not in _OF_ALL
     ]
-    apart = (("maps", *each) for each in _disagreement(fits))
-    return _lines([*apart, *_few_waves(fit), *_of_the_fit(fit, use)], own)
+    return _lines([*_disagreement(fits), *_few_waves(fit), *_of_the_fit(fit, use)], own)
 
 
-def _disagreement(fits: Sequence[Fit]) -> Iterator[tuple[str, float]]:
-    """Tell what differs between the maps by more than its errors, once in 1000 by chance, and the factor."""
+def _disagreement(fits: Sequence[Fit]) -> Iterator[Found]:
+    """Find what differs between the maps by more than its errors, once in 1000 by chance, and the factor."""
     words = {"m0": "heights", "m2": "slopes", "m4": "curvatures"}
     for name, word in words.items():
         each = [fit.numbers[name] for fit in fits]
         logs, certain = np.log([x.value for x in each]), 1 / np.array([x.relative for x in each]) ** 2
         chi_square = float(certain @ (logs - np.average(logs, weights=certain)) ** 2)
         if chdtrc(len(each) - 1, chi_square) < 1e-3 / len(words):
-            yield word, math.exp(np.ptp(logs))
+            yield "maps", word, math.exp(np.ptp(logs))
 
 
 def profile_cautions(fit: ProfileFit, profiles: Sequence[Profile], cutoff: float | None) -> list[str]:
@@ -204,8 +203,8 @@ def shares(ready: Prepared) -> dict[str, float]:
     }
 
 
-def faults(ready: Prepared, longer: float) -> Iterator[tuple[Any, ...]]:
-    """Faults beyond their limits, for words of `mcgw.maps.fit_cautions`; `longer` is a cutoff, in pixels."""
+def faults(ready: Prepared, longer: float) -> Iterator[Found]:
+    """Faults of the instrument beyond their limits; `longer` is a cutoff, in pixels."""
     percent = {name: 100 * share for name, share in shares(ready).items() if share > LIMITS[name]}
     if "range" in percent:
         yield "range", percent["range"]

@@ -9,15 +9,7 @@ from typing import Any, Literal
 import numpy as np
 import tomli_w
 
-from analytic import (
-    HeightTable,
-    MeasuredHeights,
-    MeasuredRadii,
-    Nayak,
-    RandomCurvature,
-    SpectralMoments,
-    Surface,
-)
+from analytic import HeightTable, MeasuredHeights, MeasuredRadii, Nayak, SpectralMoments, Surface
 from mcgw.formats.files import together, whole_file
 from mcgw.formats.units import parse
 from mcgw.maps.fit import Fit
@@ -31,6 +23,7 @@ from mcgw.scene.kinds import argument
 from mcgw.scene.measured import MOMENTS, SUMMITS, Fitted, Uncertainty
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document
+from mcgw.scene.surface import Spectral
 
 Heights = Literal["gaussian", "nayak", "table", "measured", "summits"]
 _EQUAL = 1e-3  # of the standard deviation of the map: summits that differ less are equally high
@@ -165,8 +158,7 @@ def _known(fit: Fit | ProfileFit) -> Fitted:
 
 def scene_of_moments(moments: SpectralMoments, area: float, modulus: float, title: str) -> Scene:
     """Return the scene of an isotropic Gaussian surface, each summit with its own radius."""
-    law = Nayak(moments.alpha)
-    return _scene(moments.surface(area, modulus), title, heights=law, summits=RandomCurvature(law.alpha))
+    return _scene(Spectral(moments, moments.surface(area, modulus)), title)
 
 
 def _of_summits(fit: Fit, use: str, heights: Heights, modulus: float, title: str) -> Scene:
@@ -186,7 +178,7 @@ def _of_summits(fit: Fit, use: str, heights: Heights, modulus: float, title: str
     return _scene(Surface(float(z.std()), radius, eta, fit.area, modulus), title, **more)
 
 
-def _scene(surface: Surface, title: str, **more: Any) -> Scene:
+def _scene(surface: Surface | Spectral, title: str, **more: Any) -> Scene:
     separations, contact = np.linspace(0, 3, 31).round(1), Contact(quantities=_FITTED)
     return Scene(surface, separations=separations, title=title, contact=contact, seed=1, **more)
 
@@ -214,14 +206,12 @@ def write_scene(scene: Scene, path: Path, measured: Fit | None, comments: list[s
         document = document | {"surface": surface, "heights": {}, "summits": {}}
     document = _readable(document)
     text += _in_few_lines(tomli_w.dumps(document), scene.separations)
-    if measured is None:
-        with whole_file(path) as unfinished:
-            unfinished.write_text(text, encoding="utf-8")
-        return [path]
-    with together(), whole_file(path) as unfinished, whole_file(beside) as numbers:
-        with open(numbers, "wb") as file:
-            np.save(file, measured.summits)
+    with together(), whole_file(path) as unfinished:
         unfinished.write_text(text, encoding="utf-8")
+        if measured is None:
+            return [path]
+        with whole_file(beside) as numbers, open(numbers, "wb") as file:
+            np.save(file, measured.summits)
     return [path, beside]
 
 

@@ -100,16 +100,16 @@ def fit(
     >>> sorted(found.estimates)
     ['moments', 'summits']
     """
-    given = {
+    asked = preparation_of({
         "cutoff": cutoff, "form": form, "missing": missing, "spikes": spikes, "trim": trim,
         "long_cutoff": long_cutoff, "lines": lines, "parts": parts,
-    }  # fmt: skip
+    })  # fmt: skip
     size = None if pixel is None else (argument("pixel", pixel, "m"),) * 2
     if isinstance(heights, str | Path | Topography | Profile):
         heights = [heights]
     sources = [Path(each) if isinstance(each, str) else each for each in heights]
     read = partial(read_heights, pixel=size, unit=unit, missing=missing_value)
-    return fit_sources(sources, read, preparation_of(given))[0]
+    return fit_sources(sources, read, asked)[0]
 
 
 def fit_sources(

@@ -10,17 +10,7 @@ from numpy.typing import NDArray
 from analytic.arrays import Array
 from mcgw.maps.map_files import read_foreign, read_h5, read_npy
 from mcgw.maps.text_file import read_text
-from mcgw.maps.topography import (
-    FLATTEST,
-    LEAST_POINTS,
-    STEEPEST,
-    ForeignError,
-    Given,
-    Profile,
-    Raw,
-    Topography,
-    metres_in,
-)
+from mcgw.maps.topography import ForeignError, Given, Profile, Raw, Topography, metres_in
 
 _TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv", ".prf", ".xy", ".xyz")
 READERS: dict[str, Callable[[Path, Given], Raw]] = {
@@ -90,17 +80,8 @@ def read_heights(
     if plane and 1 not in heights.shape:
         dx, dy = lateral.tolist()
         found = Topography(heights, (dx, dy), raw.periodic, assumed)
-        slope = found.steepness
-        if assumed and slope > STEEPEST:
-            raise ValueError(
-                f"{path}: gives no unit of its heights, and in {assumed} their typical slope would be "
-                f"{slope:.3g}; give --unit (um, nm, ...), or another --pixel"
-            )
-        if slope and not FLATTEST <= slope <= STEEPEST:
-            raise ValueError(
-                f"{path}: the typical slope of this map is {slope:.3g}, which no surface has ({FLATTEST:g} "
-                f"to {STEEPEST:g}): its heights, or its pixel of {dx:.3g} m, are in another unit"
-            )
+        if doubt := found.doubtful:
+            raise ValueError(f"{path}: {doubt}")
         return found
     if plane or pixel is not None:  # SDF and X3P hold a line as a map of one row
         lateral = lateral[int(plane and len(heights) > 1)] * np.arange(heights.size)
@@ -167,8 +148,6 @@ def _profile_at(places: Array, heights: Array, assumed_unit: str = "") -> Profil
         raise ValueError(f"{missing} of the {known.size} heights are missing; measure the profile again")
     if places.size > 1 and places[-1] < places[0]:
         places, heights, known = places[::-1], heights[::-1], known[::-1]
-    if places.size < LEAST_POINTS:
-        raise ValueError(f"{places.size} points: a profile has {LEAST_POINTS} or more")
     steps = np.diff(places)
     if not np.all(steps > 0):
         k = int(np.argmin(steps))
@@ -176,12 +155,11 @@ def _profile_at(places: Array, heights: Array, assumed_unit: str = "") -> Profil
             f"x = {places[k]:g} m is followed by {places[k + 1]:g} m; give x in increasing or decreasing "
             f"order"
         )
-    even = np.linspace(places[0], places[-1], places.size)
-    spacing = float(even[1] - even[0])
+    even, spacing = np.linspace(places[0], places[-1], places.size, retstep=True)
     resampled = bool(np.abs(places - even).max() > _EVEN * spacing)
     if resampled or missing:
         heights = np.interp(even if resampled else places, places[known], heights[known])
-    return Profile(np.array(heights, dtype=np.float64), spacing, assumed_unit, missing, resampled)
+    return Profile(np.array(heights, dtype=np.float64), float(spacing), assumed_unit, missing, resampled)
 
 
 def _in_metres(path: Path, raw: NDArray[Any], metre: float, missing: float | None) -> Array:

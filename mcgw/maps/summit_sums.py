@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 from scipy import ndimage
 
+from analytic import SpectralMoments
 from analytic.arrays import Array, Ints, Marks
 from mcgw.formats.table import Column, Table
 from mcgw.machine.compiling import njit
@@ -56,6 +57,18 @@ class Summits:
     def area(self) -> float:
         """Area of all points that count, m^2."""
         return float(self.sums[0].sum()) * math.prod(self.pixel)
+
+    @property
+    def mean_squares(self) -> dict[str, float]:
+        """Means over the map, by the names of `SUMS`."""
+        sums = self.sums.sum(axis=1)
+        return dict(zip(SUMS[1:], (sums[1:] / sums[0]).tolist(), strict=True))
+
+    @property
+    def moments(self) -> SpectralMoments:
+        """Moments, averaged over both axes."""
+        m = self.mean_squares
+        return SpectralMoments(m["z2"] - m["z"] ** 2, (m["slope_x"] + m["slope_y"]) / 2, m["bend"])
 
     def without(self, part: int) -> "Summits":
         """All but one sub-area."""

@@ -42,12 +42,6 @@ def read_text(path: Path, given: Given) -> Raw:
     alone. Lines like 1,25 are x and z if what stands before the comma rises, and heights with decimal commas
     otherwise. ``nan``, ``BAD``, ``---`` and nothing between two separators are missing points. The text is
     UTF-8, or UTF-16 with its mark. A given pixel counts more than what a comment tells.
-
-    Raises
-    ------
-    ValueError
-        If a row has another length than the first, a word is not a number, a comma may mean two things, no
-        pixel size is known, or points are on no regular grid.
     """
     table, header, refused = table_of(path)
     rows, columns = table.shape

@@ -95,6 +95,22 @@ class Topography:
         ]
         return math.hypot(*usual)
 
+    @property
+    def doubtful(self) -> str:
+        """Why the unit of the heights or of the pixel is implausible; empty if it is plausible."""
+        slope = self.steepness
+        if self.assumed_unit and slope > STEEPEST:
+            return (
+                f"gives no unit of its heights, and in {self.assumed_unit} their typical slope would be "
+                f"{slope:.3g}; give --unit (um, nm, ...), or another --pixel"
+            )
+        if slope and not FLATTEST <= slope <= STEEPEST:
+            return (
+                f"the typical slope of this map is {slope:.3g}, which no surface has ({FLATTEST:g} to "
+                f"{STEEPEST:g}): its heights, or its pixel of {self.pixel[0]:.3g} m, are in another unit"
+            )
+        return ""
+
 
 @dataclass(frozen=True)
 class Profile:
