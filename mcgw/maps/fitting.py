@@ -25,8 +25,6 @@ from mcgw.maps.topography import Profile, Topography
 from mcgw.maps.waves import Spread, Uncertain, Waves, uncertain
 from mcgw.scene.kinds import argument
 
-_MOMENTS = ("m0", "m2", "m4")
-
 
 def fit(
     heights: str | Path | Topography | Profile | Sequence[str | Path | Topography | Profile],
@@ -171,9 +169,8 @@ def _pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
     """
     first, areas = fits[0], np.array([fit.area for fit in fits])
     weights = areas / areas.sum()
-    moments = SpectralMoments(
-        *(weights @ [[getattr(fit.moments, x) for x in _MOMENTS] for fit in fits]).tolist()
-    )
+    of_each = [[fit.moments.m0, fit.moments.m2, fit.moments.m4] for fit in fits]
+    moments = SpectralMoments(*(weights @ of_each).tolist())
     cubes = [np.array(fit.skewness) * (fit.moments.m0 / moments.m0) ** 1.5 for fit in fits]
     skewness, errors = (weights[:, None] * cubes).T
     each = [fit.roughness for fit in fits]
@@ -182,6 +179,7 @@ def _pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
     listed, waves = [fit.listed for fit in fits], [fit.waves for fit in fits]
     points = np.array([x.area / x.sums[0].sum() for x in listed])  # area of each
     sums = [x.sums.sum(axis=1) * size for x, size in zip(listed, points / points[0], strict=True)]
+    methods = [x for x in first.estimates if all(x in fit.estimates for fit in fits)]
     visible = [fit.visible for fit in fits if fit.visible is not None]
     squares = weights @ [[*fit.mean_squares.values()] for fit in fits]
     return replace(
@@ -190,11 +188,7 @@ def _pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
         numbers={
             x: _of_all(getattr(moments, x), [fit.numbers[x] for fit in fits], weights) for x in first.numbers
         },
-        estimates={
-            x: _estimate(x, fits, weights, moments)
-            for x in first.estimates
-            if all(x in fit.estimates for fit in fits)
-        },
+        estimates={x: _estimate(x, fits, weights, moments) for x in methods},
         skewness=(float(skewness.sum()), float(np.linalg.norm(errors))),
         listed=replace(
             Summits.together(listed, np.transpose(sums)),

@@ -73,9 +73,8 @@ def _moments_of_correlation(sq: float, given: Mapping[str, float], kind: str) ->
     q2 = w + 1 / w - 2
     q4 = w**3 / 3 - 2 * w - 1 / w + 8 / 3
     kept = 1 - 1 / w
-    return SpectralMoments(
-        sq**2, sq**2 * q2 / (2 * length**2 * kept), 3 * sq**2 * q4 / (8 * length**4 * kept)
-    )
+    m0, square = sq**2, length**2
+    return SpectralMoments(m0, m0 * q2 / (2 * square * kept), 3 * m0 * q4 / (8 * square**2 * kept))
 
 
 def moments_from(

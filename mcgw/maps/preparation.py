@@ -77,11 +77,9 @@ def prepared(topography: Topography, asked: Preparation) -> Prepared:
     level, holes = _levelled(kept, asked, notes)
     del kept
     used = level
-    if asked.long_cutoff is not None:
-        used = replace(used, heights=used.heights - lowpass(used, asked.long_cutoff))
-        notes.append(
-            f"long cutoff: waves longer than {asked.long_cutoff:g} m removed (Gaussian, ISO 16610-61)"
-        )
+    if (longest := asked.long_cutoff) is not None:
+        used = replace(used, heights=used.heights - lowpass(used, longest))
+        notes.append(f"long cutoff: waves longer than {longest:g} m removed (Gaussian, ISO 16610-61)")
     if asked.cutoff is not None:
         used = smooth(used, asked.cutoff)
     seen = None if holes is None else _seen(level, holes, asked, notes)
@@ -141,10 +139,8 @@ def _seen(topography: Topography, holes: Marks, asked: Preparation, notes: list[
     whole = ndimage.minimum_filter(seen, 2 * 2 + 1)  # pixels on each side that differences need
     left = np.count_nonzero(whole) / max(np.count_nonzero(~holes) * seen.size / holes.size, 1)
     if asked.missing == "fill" or (asked.missing == "auto" and left < 0.5):
-        why = (
-            "" if asked.missing == "fill" else f": only {100 * left:.2g} % of the others have all neighbours"
-        )
-        notes.append(f"{told}, and used like the others{why}")
+        few = f": only {100 * left:.2g} % of the others have all neighbours"
+        notes.append(f"{told}, and used like the others{'' if asked.missing == 'fill' else few}")
         return None
     notes.append(
         f"{told}; they and their neighbours are ignored, which leaves {100 * whole.mean():.3g} % of the map"

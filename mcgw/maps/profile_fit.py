@@ -103,15 +103,13 @@ class ProfileFit(Drawn):
         """Return a row for each number, with its 95 % interval."""
         units = {"m0": "m^2", "m4": "1/m^2", "eta": "1/m^2", "radius": "m", "sigma": "m"}
         value, _, low, high = zip(*self.numbers.values(), strict=True)
-        return Table(
-            (
-                Column("name", list(self.numbers), " "),
-                Column("unit", [units.get(name, "1") for name in self.numbers]),
-                Column("value", value, form=".4g"),
-                Column("low_95", low, "95 %", form=".3g"),
-                Column("high_95", high, form=".3g", between=" to "),
-            )
-        )
+        return Table((
+            Column("name", list(self.numbers), " "),
+            Column("unit", [units.get(name, "1") for name in self.numbers]),
+            Column("value", value, form=".4g"),
+            Column("low_95", low, "95 %", form=".3g"),
+            Column("high_95", high, form=".3g", between=" to "),
+        ))  # fmt: skip
 
 
 def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: Form = "plane") -> ProfileFit:
@@ -126,9 +124,8 @@ def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: For
     if not profiles:
         raise ValueError("give at least one profile")
     plain = [p.without_form(_ORDERS[form]) for p in profiles]
-    if not any(
-        np.ptp(p.heights) > 1e-12 * np.abs(q.heights).max() for p, q in zip(plain, profiles, strict=True)
-    ):
+    pairs = zip(plain, profiles, strict=True)
+    if not any(np.ptp(p.heights) > 1e-12 * np.abs(q.heights).max() for p, q in pairs):
         raise ValueError("the profile is flat, without roughness")
     filtered = plain if cutoff is None else [p.smoothed(cutoff) for p in plain]
     pieces = math.ceil(16 / len(profiles))

@@ -79,9 +79,7 @@ class Summits:
     @classmethod
     def together(cls, found: Sequence["Summits"], sums: Array) -> "Summits":
         """Summits of one after the other, and sums over all."""
-        rows: dict[str, Any] = {
-            name: np.concatenate([getattr(x, name) for x in found], axis=-1) for name in _OF_EACH
-        }
+        rows: Any = {name: np.concatenate([getattr(x, name) for x in found], axis=-1) for name in _OF_EACH}
         return replace(found[0], sums=sums, **rows)
 
     def table(self) -> Table:
@@ -108,20 +106,18 @@ class Summits:
         with np.errstate(divide="ignore", invalid="ignore"):  # nan where nothing was seen
             m = dict(zip(SUMS[1:], self.sums[1:] / self.sums[0], strict=True))
             squares = mean((self.heights - mean(self.heights)[self.tile]) ** 2)
-            return Table(
-                (
-                    Column("tile", tile),
-                    Column("column", tile % across),
-                    Column("row", tile // across),
-                    Column("summits", number),
-                    Column("eta", number / (self.sums[0] * math.prod(self.pixel)), unit="1/m^2"),
-                    Column("radius", 1 / mean(self.bends), "R", "m"),
-                    Column("sigma", np.sqrt(squares * number / (number - 1)), unit="m"),
-                    Column("m0", m["z2"] - m["z"] ** 2, unit="m^2"),
-                    Column("m2", (m["slope_x"] + m["slope_y"]) / 2),
-                    Column("m4", m["bend"], unit="1/m^2"),
-                )
-            )
+            return Table((
+                Column("tile", tile),
+                Column("column", tile % across),
+                Column("row", tile // across),
+                Column("summits", number),
+                Column("eta", number / (self.sums[0] * math.prod(self.pixel)), unit="1/m^2"),
+                Column("radius", 1 / mean(self.bends), "R", "m"),
+                Column("sigma", np.sqrt(squares * number / (number - 1)), unit="m"),
+                Column("m0", m["z2"] - m["z"] ** 2, unit="m^2"),
+                Column("m2", (m["slope_x"] + m["slope_y"]) / 2),
+                Column("m4", m["bend"], unit="1/m^2"),
+            ))  # fmt: skip
 
 
 @njit(cache=True)

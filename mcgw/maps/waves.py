@@ -1,7 +1,6 @@
 """How well one map can tell of its surface: long waves are few on it, and form takes some of them away."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -14,7 +13,7 @@ from analytic.arrays import Array
 from mcgw.maps.topography import Topography
 
 _ACROSS = 1536  # points that are looked at; of the waves shorter than that there are always many
-_BAND = 16  # rows that are looked at together: what is made of them stays in the cache
+_BAND = 16  # rows that are looked at together: whole maps of what is made of them would not stay in the cache
 
 
 class Uncertain(NamedTuple):
@@ -104,7 +103,8 @@ def waves_of(topography: Topography, moments: SpectralMoments, order: int = -1) 
     y = (2 * math.pi / dy * fft.fftfreq(z.shape[0]))[:, None] ** 2
     down, along = _legendre_shares(z.shape, order)
     sums, taken, products = np.zeros((3, len(kinds))), 0.0, np.zeros((3, 3))
-    for band in _bands(len(z)):
+    for first in range(0, len(z), _BAND):
+        band = slice(first, first + _BAND)
         features = np.array([np.ones_like(power[band]), x + y[band], x * x + y[band] ** 2])
         terms = np.tensordot(kinds, features, 1) * power[band]
         products += (terms[:3] * waves).reshape(3, -1) @ terms[:3].reshape(3, -1).T
@@ -118,11 +118,6 @@ def waves_of(topography: Topography, moments: SpectralMoments, order: int = -1) 
         for name, of in zip(by_moments, sums.T.tolist(), strict=True)
     }
     return Waves(spreads, 2 * _number(float(sums[0, 0])), products)
-
-
-def _bands(rows: int) -> Iterator[slice]:
-    """Few rows after the other: whole maps between them would take most of the memory and time."""
-    return (slice(first, first + _BAND) for first in range(0, rows, _BAND))
 
 
 def _number(seen: float) -> float:
@@ -174,12 +169,13 @@ def _power(z: Array) -> tuple[Array, Array]:
     x, y = 2 * math.pi * fft.rfftfreq(columns), 2 * math.pi * fft.fftfreq(rows)[:, None]
     mean = z.mean()
     periodic = np.empty((rows, x.size), dtype=np.complex128)
-    for band in _bands(rows):
+    bands = [slice(first, first + _BAND) for first in range(0, rows, _BAND)]
+    for band in bands:
         periodic[band] = fft.rfft(z[band] - mean)
     periodic = fft.fft(periodic, axis=0, overwrite_x=True)
     across, along = fft.rfft(z[-1] - z[0]), fft.fft(z[:, -1] - z[:, 0])[:, None]
     back_x, back_y = 1 - np.exp(1j * x), 1 - np.exp(1j * y)  # from the last column and row to the first
-    for band in _bands(rows):
+    for band in bands:
         laplacian = 2 * (np.cos(x) + np.cos(y[band]) - 2)
         laplacian[laplacian == 0] = 1.0
         periodic[band] -= (across * back_y[band] + along[band] * back_x) / laplacian
