@@ -35,9 +35,9 @@ def _binned(field: Asperities) -> tuple[Ints, Any, tuple[int, int]]:
 
 @njit(cache=True)
 def _highest(
-    px: Any, py: Any, best: Any, caps: Any, top: Any, flattest: Any, shape: Any, size: Any, periodic: Any
+    px: Any, py: Any, caps: Any, top: Any, flattest: Any, shape: Any, size: Any, periodic: Any
 ) -> Any:
-    """Height of the envelope above (px, py), `best` or more; `per` is 1/(2R) of each cap."""
+    """Height of the envelope above (px, py); `per` is 1/(2R) of each cap."""
     x, y, z, per, starts = caps
     rows, columns = shape
     bx, by = size[0] / columns, size[1] / rows
@@ -45,8 +45,8 @@ def _highest(
     ex, ey = px - ci * bx, py - cj * by  # inside its own bin
     margin = min(min(ex, bx - ex), min(ey, by - ey))
     least = min(bx, by)
-    furthest = max(rows, columns)
-    for ring in range(furthest + 1):
+    best = -np.inf
+    for ring in range(max(rows, columns) + 1):
         away = max((ring - 1) * least + margin, 0.0) if ring else 0.0
         if best >= top - away * away * flattest:
             break
@@ -72,17 +72,13 @@ def _highest(
 
 
 @njit(parallel=True, cache=True)
-def _heights(px: Any, py: Any, least: Any, caps: Any, shape: Any, size: Any, periodic: Any) -> Any:
-    """Envelope above points in rows and columns, `least` or more."""
-    x, y, z, per, starts = caps
+def _heights(px: Any, py: Any, caps: Any, shape: Any, size: Any, periodic: Any) -> Any:
+    """Envelope above points in rows and columns."""
     result = np.empty(px.shape)
-    top, flattest = z.max(), per.min()
+    top, flattest = caps[2].max(), caps[3].min()
     for j in prange(px.shape[0]):
         for i in range(px.shape[1]):
-            mine = (x, y, z, per, starts)
-            result[j, i] = _highest(
-                px[j, i], py[j, i], least[j, i], mine, top, flattest, shape, size, periodic
-            )
+            result[j, i] = _highest(px[j, i], py[j, i], caps, top, flattest, shape, size, periodic)
     return result
 
 
@@ -107,7 +103,7 @@ def envelope(
             )
         pixel = (width / columns, width / columns)
     x, y = ((np.arange(n) + 0.5) * p for n, p in zip((columns, rows), pixel, strict=True))
-    points = (np.broadcast_to(each, (rows, columns)) for each in (x, y[:, None], -np.inf))
+    points = (np.broadcast_to(each, (rows, columns)) for each in (x, y[:, None]))
     heights = _heights(*points, *_binned(field)[1:], field.size, periodic)
     return Topography(heights, pixel, periodic and width is None)
 
@@ -117,5 +113,5 @@ def hidden_summits(field: Asperities, *, periodic: bool = False) -> Marks:
     order, caps, shape = _binned(field)
     hidden = np.empty(field.number, dtype=np.bool_)
     x, y, z = (of_each[:, None] for of_each in caps[:3])
-    hidden[order] = (_heights(x, y, z, caps, shape, field.size, periodic) > z)[:, 0]
+    hidden[order] = (_heights(x, y, caps, shape, field.size, periodic) > z)[:, 0]
     return hidden
