@@ -9,13 +9,13 @@ filtered surface is not a filtered profile: filtered along itself, a profile kee
 crosses slantwise, and its m2 and m4 are too large by tenths. What is the same in both is the
 autocorrelation. Of an isotropic surface it depends on the distance alone, and to filter the surface with
 exp(-a q^2), in power, is to take the mean of it under a plane Gaussian of variance 2a. For a wave k of the
-profile that mean is
+profile that mean is Kummer's function M, with x^2 = a k^2 ::
 
-    w0(k) = integral of cos(k r) exp(-r^2/(4a)) r/(2a) over r from 0 on = F'(x),  x = k sqrt(a),
+    w0(k) = integral of cos(k r) exp(-r^2/(4a)) r/(2a) over r from 0 on = M(1, 1/2, -x^2).
 
-with Dawson's integral F, for which F' = 1 - 2 x F. Derivatives with respect to a bring q^2 down, so that
+Derivatives with respect to a bring q^2 down, so that
 
-    w2 = -1/2 dw0/da = k^2 (F + x F')/(2 x),      w4 = 3/8 d^2w0/da^2 = k^4 3/32 (x F''' - F'')/x^3.
+    w2 = -1/2 dw0/da = k^2 M(2, 3/2, -x^2),      w4 = 3/8 d^2w0/da^2 = k^4 M(3, 5/2, -x^2).
 
 Sums of the profile's power with these weights are the areal moments m0, m2 and m4 of `mcgw.maps.fit`,
 without bias. They are negative for short waves: those take back what the longer ones have too much.
@@ -27,7 +27,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import fft
-from scipy.special import dawsn, stdtrit
+from scipy.special import hyp1f1, stdtrit
 
 from analytic import SpectralMoments
 from analytic.arrays import Array
@@ -191,20 +191,8 @@ def _peaks(profiles: list[Profile]) -> tuple[float, float]:
 
 def _areal_weights(wave_numbers: Array, cutoff: float) -> Array:
     """Weights of waves in m0, m2 and m4, the latter two over ``k^2`` and ``k^4``, shape (3, waves)."""
-    x = wave_numbers * math.sqrt(filter_variance(cutoff))
-    few = x < 0.02  # below it two terms of the series suffice for 1e-9
-    y = np.where(few, 1.0, x)
-    f = dawsn(y)
-    first = 1 - 2 * y * f
-    second = -2 * f - 2 * y * first
-    third = -4 * first - 2 * y * second
-    return np.array(
-        [
-            np.where(few, 1 - 2 * x**2 + 4 / 3 * x**4, first),
-            np.where(few, 1 - 4 / 3 * x**2 + 4 / 5 * x**4, (f + y * first) / (2 * y)),
-            np.where(few, 1 - 6 / 5 * x**2 + 24 / 35 * x**4, 3 / 32 * (y * third - second) / y**3),
-        ]
-    )
+    order = np.array([[1.0], [2.0], [3.0]])
+    return np.asarray(hyp1f1(order, order - 0.5, -filter_variance(cutoff) * wave_numbers**2))
 
 
 def _waves(profile: Profile, cutoff: float | None, terms: int, pieces: int) -> tuple[Array, Array]:
