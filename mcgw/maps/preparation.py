@@ -89,16 +89,13 @@ def prepared(topography: Topography, asked: Preparation) -> Prepared:
 def _within(topography: Topography, notes: list[str]) -> Topography:
     """Without edge rows and columns that lack all points."""
     there = np.isfinite(topography.heights)
-    if there.all():
-        return topography
     if not there.any():
         raise ValueError(f"all {there.size} points of the map are missing")
-    (j0, j1), (i0, i1) = (np.flatnonzero(there.any(axis=axis))[[0, -1]] for axis in (1, 0))
-    box = topography.heights[j0 : j1 + 1, i0 : i1 + 1]
-    if box.size < there.size:
-        notes.append(f"edges: {box.shape[1]} x {box.shape[0]} points kept; all points outside are missing")
-        return replace(topography, heights=box, periodic=False)
-    return topography
+    box = topography.heights[ndimage.find_objects(there.view(np.int8))[0]]
+    if box.size == there.size:
+        return topography
+    notes.append(f"edges: {box.shape[1]} x {box.shape[0]} points kept; all points outside are missing")
+    return replace(topography, heights=box, periodic=False)
 
 
 def _levelled(
