@@ -177,8 +177,7 @@ def _pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
     a, square, cube, fourth = weights @ [[r.a, r.q**2, r.sk * r.q**3, r.ku * r.q**4] for r in each]
     rms = math.sqrt(square)
     listed, waves = [fit.listed for fit in fits], [fit.waves for fit in fits]
-    points = np.array([x.area / x.sums[0].sum() for x in listed])  # area of each
-    sums = [x.sums.sum(axis=1) * size for x, size in zip(listed, points / points[0], strict=True)]
+    sums = [x.sums.sum(axis=1) * math.prod(x.pixel) / math.prod(listed[0].pixel) for x in listed]
     methods = [x for x in first.estimates if all(x in fit.estimates for fit in fits)]
     visible = [fit.visible for fit in fits if fit.visible is not None]
     squares = weights @ [[*fit.mean_squares.values()] for fit in fits]
