@@ -6,14 +6,7 @@ import stat
 import h5py
 import numpy as np
 import pytest
-from oracles.inside import (
-    Column,
-    Table,
-    check_output,
-    open_npy,
-    opened,
-    write_whole,
-)
+from oracles.inside import Column, Table, check_output, open_npy, opened, write_whole
 
 LOAD = Column("load", [12.3456, 0.0, np.nan], unit="N", error=[0.0123, 0.5, 1.0])
 HIGH = Column("high", [13.0, 2.5, np.nan], unit="N", form=".3g", between=" to ")
@@ -46,7 +39,7 @@ def test_a_table_of_a_page_has_the_cells_of_a_terminal_typeset():
         Column("x", [1.5, np.nan], unit="m", form=".2g", missing="-9"),
         Column("e", [0.25, np.nan], unit="m", form=".2g", between=" +- "),
         Column("y", [3e-7, 1.0], unit="m", form="g"),
-        Column("<z>", ["&", "m^2"]),
+        Column("<z>", ["&", "m^2"])
     ))  # fmt: skip
     assert mixed.html() == (
         "<table><thead><tr><th>x (m)</th><th>y (m)</th><th>&lt;z&gt;</th></tr></thead><tbody>"
@@ -59,7 +52,7 @@ def test_a_table_of_a_page_has_the_cells_of_a_terminal_typeset():
 def test_a_file_of_a_table_has_all_digits(tmp_path):
     kinds = Table((
         Column("i", [1, np.int64(-2)]), Column("t", ["a,b", "c"]),
-        Column("x", [0.1, np.float64(1e-300)], unit="N"), Column("e", [1 / 3, 2.0], unit="1", between=" +- "),
+        Column("x", [0.1, np.float64(1e-300)], unit="N"), Column("e", [1 / 3, 2.0], unit="1", between=" +- ")
     ))  # fmt: skip
     kinds.write(str(tmp_path / "t.csv"))
     lines = (tmp_path / "t.csv").read_bytes().decode().removesuffix("\n").split("\n")

@@ -219,8 +219,7 @@ def apart(old, new):
 def near(a, b):
     """Whether lines say the same but for the last digits of their numbers.
 
-    What is less than 1e-14 of the numbers before and after it is rounding, another one on another processor;
-    a number of ten digits is rounded, with a point or without.
+    What is less than 1e-14 of the numbers before and after it is rounding, and so is all beyond ten digits.
     """
     if _NUMBER.sub("#", a) != _NUMBER.sub("#", b):
         return False

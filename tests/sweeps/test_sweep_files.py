@@ -116,10 +116,7 @@ def test_another_sweep_is_left_alone(tmp_path):
         (lambda: mcgw.sweep(SCENE.replace(seed=8), OVER, path=a), another),
         (lambda: mcgw.sweep(SCENE, OVER, path=e), another),
         (lambda: mcgw.open_ensemble(a), r"holds a sweep; mcgw\.open_sweep opens it, mcgw compare"),
-        (
-            lambda: mcgw.run(SCENE, a),
-            "holds a different sweep: sweep is .* there and None here; choose",
-        ),
+        (lambda: mcgw.run(SCENE, a), "holds a different sweep: sweep is .* there and None here; choose"),
         (lambda: mcgw.open_sweep(e), r"not the file of a sweep; mcgw\.open_ensemble opens it"),
         (lambda: mcgw.sweep(SCENE, other, path=b), r"holds a different sweep: sweep is .* there and .* here"),
     ):

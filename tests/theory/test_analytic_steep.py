@@ -122,10 +122,7 @@ def test_ratios_of_soft_tips_far_out():
     assert float(found) == pytest.approx(float(F(0.5, other) / F(0.5, mp.mpf(600))), rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("shape", "h"),
-    [(1.5, -3.0), (3.9, 0.0), (100.0, 2.0)],
-)
+@pytest.mark.parametrize(("shape", "h"), [(1.5, -3.0), (3.9, 0.0), (100.0, 2.0)])
 def test_weibull_integrals_of_any_shape(shape, h):
     with mp.workdps(40):
         k = mp.mpf(shape)
