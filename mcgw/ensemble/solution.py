@@ -136,7 +136,7 @@ def solutions(
     """
     whole, q = scene, quantity_of(given)
     if scene.interaction is not None or scene.gas is not None:  # these change the separation alone
-        scene = scene.replace(interaction=None, joint=scene.joint.without_gas)
+        scene = scene.replace(interaction=None, gas=None, rms=None, temperature=None, gas_pressure=None)
     if scene.n_surfaces < 2 and not scene.as_measured:
         raise ValueError(f"n_surfaces = {scene.n_surfaces}: an interval needs at least 2 surfaces")
     least = q.scale(scene.surface) * _LAST_DIGITS**q.exponent

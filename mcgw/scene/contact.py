@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
@@ -35,9 +35,8 @@ _LAYER = Table(
 )
 _FILLINGS = (*GASES, "vacuum")
 _GAS = f'give one of {", ".join(_FILLINGS)}, or {{conductivity = 0.15, jump = "1 um"}} (W/(m K), m)'
-_GASES = Either(
-    (Table((_CONDUCTIVITY, Key("jump", Number("m"), required=True)), _GAS, Gas), Word(_FILLINGS, _GAS)), _GAS
-)
+_OTHER_GAS = Table((_CONDUCTIVITY, Key("jump", Number("m"), required=True)), _GAS, Gas)
+_GASES = Either((_OTHER_GAS, Word(_FILLINGS, _GAS)), _GAS)
 
 
 @dataclass(frozen=True)
@@ -196,11 +195,6 @@ class Joint:
         known = {"conductivities", "resistivity", "film_resistance", "layer"}
         given = {name: getattr(self, name) for name in known if getattr(self, name) is not None}
         return Film(**given) if given else None
-
-    @property
-    def without_gas(self) -> "Joint":
-        """The same, of spots only."""
-        return replace(self, gas=None, rms=None, temperature=None, gas_pressure=None)
 
     @cached_property
     def filling(self) -> "analytic.Joint | None":

@@ -180,8 +180,7 @@ def body_of(scene: Any) -> RoughBody:
     if moments is None:
         raise ValueError(NO_SPECTRUM)
     if len(set(pair)) > 1:
-        raise ValueError(
-            f"joint.conductivities = {list(pair)}: those of a pair; a body has equal ones, as [150.0, 150.0]"
-        )
+        cure = "a body has equal ones, as [150.0, 150.0]"
+        raise ValueError(f"joint.conductivities = {list(pair)}: those of a pair; {cure}")
     hardness = scene.contact.hardness or getattr(scene.contact.law, "hardness", None)
     return RoughBody(moments, scene.surface.E_star, hardness, tuple(pair[:1]))

@@ -36,10 +36,7 @@ _WHOLE |= {"law": "contact.law"}
 
 
 def of_arguments(given: Mapping[str, Any]) -> Values:
-    """Read parts of a scene, and keys of them by their names, as its file would be read; None: left out.
-
-    Raises TypeError if there is no such part or key, SceneError with one line for each mistake.
-    """
+    """Read parts of a scene, and keys of them by their names, as its file would be read; None: left out."""
     changes: Values = {}
     for name, value in given.items():
         place = whole_key(name)
@@ -105,10 +102,7 @@ def with_changes(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dic
 
 
 def of_tables(document: Tables, folder: Path = Path(), seed: Seeds | None = None) -> Values:
-    """Read the tables of a scene, and the files beside it in `folder`; where there is no seed, ask `seed`.
-
-    Raises SceneError with one line for each mistake.
-    """
+    """Read the tables of a scene, and the files beside it in `folder`; where there is no seed, ask `seed`."""
     of: dict[str, Section] = {}
     for name, table in TABLES.items():
         outer, _, inner = name.rpartition(".")
@@ -191,10 +185,7 @@ def _surface_and_summits(of: Mapping[str, Section], folder: Path) -> tuple[Any, 
 def _contact(
     of: Mapping[str, Section], heights: HeightLaw | None, joint: Joint
 ) -> tuple[tuple[float, ...], Contact]:
-    """Separations from the mean plane of the summits; and contacts, with the quantities that follow.
-
-    These are in SI units where there is a film, and of unloading.
-    """
+    """Separations from the mean plane of the summits; contacts, with quantities of films and unloading."""
     section, shift = of["contact"], 0.0
     if section.get("datum") == "surface" and isinstance(heights, Nayak):
         shift = heights.mean / heights.std

@@ -70,9 +70,8 @@ def load_scene(
     except ValueError as error:
         raise SceneError([str(error)]) from None
     if text.startswith(HDF5):
-        raise SceneError(
-            [f"{path}: holds results, not a scene; print their scene with mcgw show --scene {path}"]
-        )
+        cure = f"print their scene with mcgw show --scene {path}"
+        raise SceneError([f"{path}: holds results, not a scene; {cure}"])
     changed = with_changes(_document(text, f"{path}: "), as_toml(changes or {}))
     return scene_of(changed, folder=path.parent, seed=seed)
 
@@ -257,9 +256,8 @@ def _body(path: Path) -> RoughBody:
         values = of_tables(document, path.parent)
         bodies = document["surface"].get("bodies")
         if bodies and not any(body["E"] == math.inf for body in bodies):
-            raise ValueError(
-                "surface.bodies: two elastic bodies; a file describes one on a rigid plane, {E = inf}"
-            )
+            cure = "a file describes one on a rigid plane, {E = inf}"
+            raise ValueError(f"surface.bodies: two elastic bodies; {cure}")
         return body_of(SimpleNamespace(**values))
     except ValueError as error:
         problems = getattr(error, "problems", [str(error).removeprefix(f"{path}: ")])

@@ -204,12 +204,7 @@ def read_surface(section: Section, told: Mapping[str, float] | None = None) -> P
 
 
 def _surface(
-    sigma: float,
-    radius: float,
-    eta: float,
-    nominal_area: float,
-    E_star: Any,
-    uncertainty: Uncertainty | None = None,
+    sigma: float, radius: float, eta: float, nominal_area: float, E_star: Any, uncertainty: Any = None
 ) -> Plain:
     modulus = composite_modulus(E_star) if isinstance(E_star, tuple) else E_star
     values = sigma, radius, eta, nominal_area, modulus
@@ -217,7 +212,7 @@ def _surface(
 
 
 def _spectral(
-    m0: float, m2: float, m4: float, nominal_area: float, E_star: Any, uncertainty: Uncertainty | None = None
+    m0: float, m2: float, m4: float, nominal_area: float, E_star: Any, uncertainty: Any = None
 ) -> Spectral:
     found = SpectralMoments(m0, m2, m4)
     try:

@@ -42,10 +42,7 @@ def law_table(law: Grading | HeightLaw, table: str) -> dict[str, Any]:
 
 
 def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]:
-    """Write the table [heights] of a height law; measured heights by the name of their file.
-
-    Raises SceneError if the law is a class of the user.
-    """
+    """Write the table [heights] of a height law that is data; measured heights by the name of their file."""
     if type(heights) is MeasuredHeights:
         held = {"heights": list(heights.heights)} if file is None else {"file": file}
         return {"law": "table", **held, "resample": False}
@@ -66,10 +63,7 @@ def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]
 def summits_table(
     radii: RandomCurvature | MeasuredRadii, surface: Surface, file: str | None = None
 ) -> dict[str, Any]:
-    """Write the table [summits]; measured radii by the name of their file, if they have one.
-
-    Radii stand there over that of the surface, which has a last digit of its own.
-    """
+    """Write the table [summits]: measured radii, over that of the surface, or the name of their file."""
     if isinstance(radii, MeasuredRadii):
         lists = {"heights": list(radii.heights.heights), "ratios": list(radii.ratios)}
         return {**(lists if file is None else {"file": file}), "resample": radii.heights.resampled}
