@@ -21,7 +21,7 @@ from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.laws.branch import Branch
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
-from analytic.quadrature import NODES, SPANS, TINY, WIDEST, ends_of, in_pieces, regular_edges
+from analytic.quadrature import NODES, SPANS, WIDEST, ends_of, in_pieces, regular_edges
 from analytic.resolution import resolved_breaks
 
 Count = Literal["fixed", "poisson"]
@@ -173,15 +173,15 @@ def _pieces(cuts: Array, which: Ints, start: float, top: float) -> tuple[Array, 
 def _of_heights(law: HeightLaw, left: Array, right: Array) -> tuple[Array, Array]:
     """Return heights and probabilities of the pieces.
 
-    What a singular end leaves over, less than the last digit of a height, counts with its exact probability.
+    The narrow ones next to a singular end, in which no heights are told apart, have their exact probability.
     """
-    at_low, at_high = np.isin(left, law.singular), np.isin(right, law.singular)
-    lump = (right - left <= 2 * TINY) & (at_low | at_high)
-    s, weights = in_pieces(left[~lump], right[~lump], NODES)
-    mass = np.where(at_low, law.cdf(right), law.sf(left))[lump] if lump.any() else np.empty(0)
-    s, probabilities = np.append(s, left[lump]), np.append(weights * law.pdf(s), mass)
-    order = np.argsort(s, kind="stable")
-    return s[order], probabilities[order]
+    s, weights = in_pieces(left, right, NODES)
+    probabilities = (weights * law.pdf(s)).reshape(-1, NODES)
+    for ends, share, other in ((left, law.cdf, right), (right, law.sf, left)):
+        narrow = np.isin(ends, law.singular)
+        if narrow.any():
+            probabilities[narrow] = share(other[narrow])[:, None] / NODES
+    return s, probabilities.ravel()
 
 
 @dataclass(frozen=True, slots=True)

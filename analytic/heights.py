@@ -12,6 +12,7 @@ import numpy as np
 from scipy.special import erfcx, gammaln, log_ndtr, ndtri, ndtri_exp
 
 from analytic.arrays import Array
+from analytic.roots import sign_changes
 
 _FAR = -30.0  # below, where no height is ever drawn, probabilities underflow
 _BEND = 0.5  # change of the logarithm of the density over a span
@@ -34,7 +35,7 @@ def _below(x: Any) -> Array:
 class HeightLaw(Protocol):
     """Distribution of the reduced height s = z/sigma, of mean 0 and standard deviation 1.
 
-    A subclass gives `pdf`, `cdf`, `sf`, `ppf`, `isf` and `rvs`, and the rest where it differs.
+    A subclass gives `pdf` or `log_pdf`, `cdf`, `sf` and `rvs`, and the rest where it differs.
     """
 
     @property
@@ -61,10 +62,16 @@ class HeightLaw(Protocol):
 
     def pdf(self, s: Array) -> Array:
         """Return the probability density at `s`; at a jump, its value just above."""
+        return np.exp(self.log_pdf(s))
+
+    def log_pdf(self, s: Array) -> Array:
+        """Return the logarithm of the density."""
+        with np.errstate(divide="ignore"):
+            return np.log(self.pdf(s))
 
     def log_ratio(self, s: Array, t: Array) -> Array:
         """Return ``log(pdf(s + t)/pdf(s))``, accurate for small `t`."""
-        return np.asarray(np.log(self.pdf(s + t) / self.pdf(s)))
+        return np.asarray(self.log_pdf(np.clip(np.asarray(s) + t, *self.support)) - self.log_pdf(s))
 
     def cdf(self, s: Array) -> Array:
         """Return the probability of a height below `s`, to full relative accuracy."""
@@ -74,9 +81,36 @@ class HeightLaw(Protocol):
 
     def ppf(self, p: Array, below: float = np.inf) -> Array:
         """Return the height at the share `p` of the heights below one, or of all."""
+        p, lower, higher = np.asarray(p), self.cdf(np.array(below)), self.sf(np.array(below))
+        found = self._dividing(p * lower, higher + (1 - p) * lower)
+        return np.minimum(found, below) if lower > 0 else np.full(p.shape, max(below, self.support[0]))
 
     def isf(self, p: Array, above: float = -np.inf) -> Array:
         """Return the height at the share `p` of the heights above one, or of all, counted from the top."""
+        p, lower, higher = np.asarray(p), self.cdf(np.array(above)), self.sf(np.array(above))
+        found = self._dividing(lower + (1 - p) * higher, p * higher)
+        return np.maximum(found, above) if higher > 0 else np.full(p.shape, min(above, self.support[1]))
+
+    def _dividing(self, below: Array, above: Array) -> Array:
+        """Return the heights with these probabilities on either side, by the logarithm of the smaller."""
+        with np.errstate(all="ignore"):
+            low, target = below < above, np.log(np.minimum(below, above))
+            found, some = np.where(low, *self.support), np.isfinite(target)
+            low, target = low[some], target[some]
+
+            def beyond(s: Array, k: Any = slice(None)) -> Array:
+                """How far a height is too high."""
+                upto, over = np.log(self.cdf(s)), np.log(self.sf(s))
+                return np.where(low[k], upto - target[k], target[k] - over)
+
+            (least, most), ones = self.support, np.ones(target.size)
+            left, right = np.maximum(-ones, least), np.minimum(ones, most)
+            while np.any(more := (left > least) & (beyond(left) >= 0)):
+                left = np.where(more, np.maximum(2 * left, least), left)
+            while np.any(more := (right < most) & ~(beyond(right) >= 0)):
+                right = np.where(more, np.minimum(2 * right, most), right)
+            found[some] = sign_changes(beyond, left, right, ones)
+        return found
 
 
 @dataclass(frozen=True)
@@ -100,6 +134,10 @@ class Gaussian(HeightLaw):
     def pdf(self, s: Array) -> Array:
         """Return ``exp(-s^2/2)/sqrt(2 pi)``."""
         return np.asarray(exp_minus_half_square(s) / np.sqrt(2 * np.pi))
+
+    def log_pdf(self, s: Array) -> Array:
+        """Return ``-s^2/2 - log(2 pi)/2``."""
+        return np.asarray(-np.square(s) / 2 - math.log(2 * math.pi) / 2)
 
     def log_ratio(self, s: Array, t: Array) -> Array:
         """Return ``-t (s + t/2)``."""
@@ -207,7 +245,8 @@ class Weibull(HeightLaw):
 
     def _power(self, s: Array) -> Array:
         """``x^k``."""
-        return np.asarray(np.exp(self.shape * self._log_x(s) + self._spread[1]))
+        with np.errstate(over="ignore"):
+            return np.asarray(np.exp(self.shape * self._log_x(s) + self._spread[1]))
 
     def _s(self, power: Array) -> Array:
         """Height of a given ``x^k``."""
@@ -219,13 +258,12 @@ class Weibull(HeightLaw):
         """Draw powers of NumPy's standard exponential numbers, reduced."""
         return self._s(rng.standard_exponential(n))
 
-    def pdf(self, s: Array) -> Array:
-        """Return ``k x^(k-1) exp(-x^k)`` times the standard deviation of x."""
+    def log_pdf(self, s: Array) -> Array:
+        """Return the logarithm of ``k x^(k-1) exp(-x^k)`` times the standard deviation of x."""
         spread, log_mean = self._spread
         rise = (self.shape - 1) * self._log_x(s) if self.shape > 1 else 0.0
-        slope = self.shape * spread * np.exp(rise + log_mean)
         inside = np.asarray(s) >= self.support[0]
-        return np.asarray(np.where(inside, slope * np.exp(-self._power(s)), 0.0))
+        return np.where(inside, math.log(self.shape * spread) + log_mean + rise - self._power(s), -np.inf)
 
     def log_ratio(self, s: Array, t: Array) -> Array:
         """Return the ratio of densities, by the relative change of x."""

@@ -31,8 +31,6 @@ _WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of it
 _LARGEST = 13.5  # curvature tau: exp(-tau^2/4) is 1e-20
 _FAR = 40.0  # standard deviations: beyond, densities underflow
 _STEPS = (0.0, 0.7, 1.4, 2.2, 3.2, 4.5, 6.5, 9.5, 14.0, 20.0, 28.0, _FAR)
-_PER_PIECE = 8  # points of the first guess of a quantile
-_STEPS_OF_NEWTON = 4
 _LEAST, _MOST = 1.501, 1e12
 
 
@@ -129,14 +127,9 @@ class Nayak(HeightLaw):
         x = self.rho / math.sqrt(2) * np.sqrt(mean[:n]) + self.width * rng.standard_normal(n)
         return np.asarray((x - self.mean) / self.std), np.sqrt(product[:n])
 
-    def pdf(self, s: Array) -> Array:
-        """Return Nayak's density, in reduced heights."""
-        return np.asarray(self.std * np.exp(self.log_density(self.over_rms(s))))
-
-    def log_ratio(self, s: Array, t: Array) -> Array:
-        """Return the difference of the logarithms of the density."""
-        x = self.over_rms(s)
-        return np.asarray(self.log_density(x + self.std * np.asarray(t)) - self.log_density(x))
+    def log_pdf(self, s: Array) -> Array:
+        """Return the logarithm of Nayak's density, in reduced heights."""
+        return np.asarray(math.log(self.std) + self.log_density(self.over_rms(s)))
 
     def cdf(self, s: Array) -> Array:
         """Return the integral of the density from below."""
@@ -145,34 +138,6 @@ class Nayak(HeightLaw):
     def sf(self, s: Array) -> Array:
         """Return the integral of the density from above."""
         return np.exp(_series(self, 1)(self.over_rms(s)))
-
-    def ppf(self, p: Array, below: float = np.inf) -> Array:
-        """Find the height by Newton's method on the logarithm of the smaller probability, or `below`."""
-        lower, higher = self.cdf(np.array(below)), self.sf(np.array(below))
-        p = np.asarray(p, dtype=np.float64)
-        found = self._at(p * lower, higher + (1 - p) * lower)
-        return np.minimum(found if lower > 0 else below + 0 * p, below)
-
-    def isf(self, p: Array, above: float = -np.inf) -> Array:
-        """Return the quantile, counted from the top."""
-        lower, higher = self.cdf(np.array(above)), self.sf(np.array(above))
-        p = np.asarray(p, dtype=np.float64)
-        found = self._at(lower + (1 - p) * higher, p * higher)
-        return np.maximum(found if higher > 0 else above + 0 * p, above)
-
-    def _at(self, below: Array, above: Array) -> Array:
-        """Reduced height with these probabilities on either side."""
-        (x, *logarithms), low = _guesses(self), below < above
-        with np.errstate(divide="ignore"):
-            target = np.log(np.where(low, below, above))
-        first = [np.interp(target, y[::way], x[::way]) for y, way in zip(logarithms, (1, -1), strict=True)]
-        found = np.where(low, *first)
-        for _ in range(_STEPS_OF_NEWTON):
-            share = np.where(low, *(_series(self, way)(found) for way in (-1, 1)))
-            step = (target - share) * np.exp(share - self.log_density(found))
-            found = found + np.where(np.isfinite(target), np.where(low, step, -step), 0.0)
-        ends = np.where(low, -np.inf, np.inf)
-        return np.where(np.isfinite(target), (found - self.mean) / self.std, ends)
 
 
 @lru_cache(maxsize=192)
@@ -198,11 +163,3 @@ def _series(law: Nayak, way: int) -> PiecewiseSeries:
         return np.asarray(np.log(sums) + largest + factor)
 
     return fitted(logarithm, law.edges, _TERMS)
-
-
-@lru_cache(maxsize=64)
-def _guesses(law: Nayak) -> tuple[Array, Array, Array]:
-    """Heights over sqrt(m0), and logarithms of the probabilities below and above them."""
-    parts = np.linspace(0, 1, _PER_PIECE, endpoint=False)
-    x = np.append((law.edges[:-1, None] + np.diff(law.edges)[:, None] * parts).ravel(), law.edges[-1])
-    return x, _series(law, -1)(x), _series(law, 1)(x)

@@ -17,7 +17,7 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
-from analytic.gradings import Exponential, Grading, Homogeneous, Table
+from analytic.gradings import Grading
 from analytic.heights import Gaussian, HeightLaw
 from analytic.measured_summits import MeasuredHeights
 
@@ -27,18 +27,16 @@ WIDEST = 4.0  # piece, on which they resolve the normal density as far down as s
 REACH = 13.0  # no lower or rarer normal height counts: 2e-37 of the density, times a modulus up to exp(3|s|)
 POWER = 4  # of the modulus in the kurtosis
 _GROWTH = 8.0  # of the pieces away from a singular end
-_STEP = 2e-3  # of differences: where the mean has 12 digits, those of the slope are off by 1e-9 of the mean
 TINY = 1e-14  # distance from such an end, below which heights are not told apart
-_UNDERFLOW = -745.0  # logarithm of the least density
-_RAREST = 1e-290  # share of the heights next to which densities underflow
-_NOTHING = 1e-32  # share of the touching heights that can be left out
-_RARE = 1e-37  # a share that no sampler draws
-_SURE = 1e-16  # up to such a rare height a grading must have values
-_SUMS = ((4, 0.0), (3, 0.0), (2, 0.0), (1, 3.0))  # powers of the modulus and of the approach in moments
+_STEP = 2e-3  # of differences: where the mean has 12 digits, those of the slope are off by 1e-9 of the mean
+_NOTHING = -76.0  # logarithm of a density over its largest value, that counts in no sum; sought at distances
+_OUTWARDS = np.unique(np.concatenate([[0.0], np.geomspace(1e-3, 1e12, 200), np.geomspace(0.1, 1e3, 200)]))
+_UP_TO_END = 1 - np.append(np.geomspace(1, 1e-12, 200), 0.0)  # of a bounded range
 _LOST = 40.0  # logarithm of the weight lost outside: 4e-18 of its largest value
 _FARTHER, _MOST_STEPS = 1.1, 1000  # an end is looked for so many times as far, up to 1e38 times
 _ALONG = np.union1d(np.linspace(0, 1, 65), np.geomspace(1e-4, 1, 65))
-_TAME = Homogeneous, Exponential, Table  # rise no faster than ``exp(-s)``: the normal law makes nothing of it
+_RARE = 1e-37  # a share that no sampler draws
+_SUMS = ((4, 0.0), (3, 0.0), (2, 0.0), (1, 3.0))  # powers of the modulus and of the approach in moments
 _GRID = 16  # the upper end is rounded up to one over this
 
 
@@ -91,83 +89,61 @@ def ends_of(
     """Range of the rule: from the lowest separation, or height there is, to where nothing is left.
 
     Separations increase; `power` and `exponent` are the highest powers of the modulus and of the approach
-    that are summed. Under other laws than the normal one it is the range of what counts at the lowest
-    separation. A grading that rises too steeply for sums of such powers is a ValueError.
+    that are summed. A grading that rises too steeply for sums of such powers is a ValueError.
     """
     low, high = max(float(separations[0]), law.support[0]), law.support[1]
-    if isinstance(law, Gaussian) and isinstance(getattr(grading, "grading", grading), _TAME):
-        last = max(float(separations[-1]), 0.0)
-        return max(low, -REACH), last + REACH**2 / (last + math.hypot(last, REACH))
-    start = max(low, float(law.ppf(np.array(_NOTHING))))
-    last = max(start, float(separations[-1])) if isinstance(law, Gaussian) else start
-    top = min(float(law.isf(np.array(_NOTHING), last)), high)
-    if start < high and not start < top and law.pdf(np.array(start)) > 0:  # SciPy has lost this tail
-        top = min(start + 1.0, high)
-    elif not (start < top and law.sf(np.array(start)) > _RAREST):
-        return start, top
+    if not low < high:
+        return low, high
+    first, last = np.clip(np.maximum(separations[[0, -1]], 0.0), low, high).tolist()
 
-    def logarithms(s: Array, start: float) -> tuple[Array, Array]:
+    def logarithms(s: Array) -> tuple[Array, Array]:
         """Of what is summed, over a constant, and of the modulus in it."""
         with np.errstate(divide="ignore"):
-            density = -s * s / 2 if isinstance(law, Gaussian) else np.maximum(np.log(law.pdf(s)), _UNDERFLOW)
             modulus = power * np.log(np.abs(grading(s)))
-        return density + modulus + exponent * np.log1p(np.abs(s - start)), modulus
+        return law.log_pdf(s) + modulus + exponent * np.log1p(np.abs(s - low)), modulus
+
+    def reach(start: float, limit: float) -> float:
+        """Return the height beyond which nothing is left, up or down to a limit."""
+        if start == limit:
+            return limit
+        way, room = (1 if limit > start else -1), abs(limit - start)
+        away = np.union1d(_OUTWARDS[room > _OUTWARDS], room * _UP_TO_END) if room < np.inf else _OUTWARDS
+        s = start + way * away
+        density = law.log_pdf(s)
+        counts = np.flatnonzero(density > density[density < np.inf].max(initial=-np.inf) + _NOTHING)
+        end = found = float(s[min(counts.max(initial=-1) + 1, s.size - 1)])
+        for _ in range(_MOST_STEPS):
+            s = start + (found - start) * _ALONG
+            s[-1] = found
+            weight, modulus = logarithms(s)
+            if abs(found - start) >= room or not weight[-1] > weight.max() - _LOST:
+                if found == end or modulus.max() < steepest:
+                    return found
+                break
+            if modulus.max() > steepest:
+                break
+            found = start + way * min(_FARTHER * abs(found - start), room)
+        raise ValueError(
+            f"grading: up to s = {found:.4g} E*(s)/E* increases too steeply, or the tail of the heights is "
+            "too heavy, for a mean and a variance in double precision; let the grading level off"
+        )
 
     steepest = 700.0 - 25.0 * power  # leaves room for the power of the approach
-    middle = float(np.clip(law.isf(np.array(0.5), start), start, top))
-    return _reach(logarithms, steepest, middle, start, low), _reach(logarithms, steepest, start, top, high)
-
-
-def _reach(
-    logarithms: Callable[[Array, float], tuple[Array, Array]],
-    steepest: float,
-    start: float,
-    end: float,
-    limit: float,
-) -> float:
-    """Height beyond which an integral has nothing left: `end`, or farther from `start`, up to `limit`.
-
-    If the integrand does not fall, or the modulus is then beyond double precision, it is a ValueError.
-    """
-    found = end
-    for _ in range(_MOST_STEPS):
-        s = start + (found - start) * _ALONG
-        s[-1] = found
-        weight, modulus = logarithms(s, start)
-        if found == limit or not weight[-1] > weight.max() - _LOST:
-            if found == end or modulus.max() < steepest:
-                return found
-            break
-        if modulus.max() > steepest:
-            break
-        found = start + _FARTHER * (found - start)
-        found = min(found, limit) if start < limit else max(found, limit)
-    raise ValueError(
-        f"grading: up to s = {found:.4g} E*(s)/E* increases too steeply, or the tail of the heights is "
-        "too heavy, for a mean and a variance in double precision; let the grading level off"
-    )
+    return reach(first, low), reach(last, high)
 
 
 def regular_edges(law: HeightLaw, start: float, top: float) -> list[float]:
     """Return ends of pieces from `start` to `top`, as wide as the density lets each piece be."""
     if isinstance(law, Gaussian):
         return [start, *WIDEST * np.arange(np.floor(start / WIDEST) + 1, np.ceil(top / WIDEST)), top]
-    marks = [b for b in law.breaks if start < b < top] + [top]
-    below = [b for b in law.singular if b <= start]
-    above = [b for b in law.singular if b >= top]
     edges = [start]
-    for mark in marks:
-        while edges[-1] < mark:
-            a = edges[-1]
-            step = min(SPANS * law.span(a), max(WIDEST, abs(a))) if not (below and a == below[0]) else WIDEST
-            if below:
-                step = min(step, max((_GROWTH - 1) * (a - below[0]), TINY))
-            if above:
-                step = min(step, max((1 - 1 / _GROWTH) * (above[0] - a), TINY))
-            while a == start and a + step < mark and law.cdf(np.array(a + step)) < _NOTHING:
-                step *= 2  # where a law begins flat and its ppf is lost, no end of pieces would hold nothing
-            last = a + (1 if above else 1.5) * step >= mark  # towards a singular end no piece is a wider one
-            edges.append(mark if last or a + step == a else a + step)
+    for mark in [*(b for b in law.breaks if start < b < top), top]:
+        while (a := edges[-1]) < mark:
+            step = min(SPANS * law.span(a), max(WIDEST, abs(a)))
+            for end in law.singular:
+                widest = (_GROWTH - 1) * (a - end) if end <= a else (1 - 1 / _GROWTH) * (end - a)
+                step = min(step, max(widest, TINY * max(1.0, abs(a))))
+            edges.append(min(a + step, mark))
     return edges
 
 
@@ -187,7 +163,7 @@ def extent(grading: Grading, heights: HeightLaw, separations: Sequence[float]) -
     -------
     (float, float)
         The first is the lowest separation, or a height that is never fallen below. No height is above the
-        second but one in 1e37, or, where the grading has no values up there, one in 1e16.
+        second but one in 1e37.
 
     Examples
     --------
@@ -197,25 +173,15 @@ def extent(grading: Grading, heights: HeightLaw, separations: Sequence[float]) -
     (0.0, True)
     """
     h = np.unique(np.asarray(separations, dtype=np.float64))
-    end = heights.support[1]
-    sure = min(max(_above(heights, _SURE, -math.inf), h[-1] + 1), end)
-    bottom = max(float(heights.ppf(np.array(_RARE))), heights.support[0])
-    low = max(float(h[0]), bottom)
-    high = max([sure, *(_above(heights, _RARE, start) for start in (-math.inf, h[-1]))])
+    low = max(float(h[0]), float(heights.ppf(np.array(_RARE))), heights.support[0])
+    high = max(float(heights.isf(np.array(_RARE), start)) for start in (-math.inf, h[-1]))
     for power, exponent in () if isinstance(heights, MeasuredHeights) else _SUMS:
         with suppress(ValueError):  # its message is for those who ask for this moment
             ends = ends_of(heights, h, grading, power, exponent)
             low, high = min(low, max(ends[0], float(h[0]))), max(high, ends[1])
             break
-    high = min(math.ceil(_GRID * high) / _GRID, end)
+    high = min(math.ceil(_GRID * high) / _GRID, heights.support[1])
     return (low, high) if low < high else (low, low + 1.0)
-
-
-def _above(heights: HeightLaw, share: float, start: float) -> float:
-    """Height at a share of those above `start`; minus infinity if the law cannot tell it."""
-    with np.errstate(all="ignore"):
-        found = float(heights.isf(np.array(share), start))
-    return found if math.isfinite(found) else -math.inf
 
 
 def fall_of(mean: Callable[[Array], Array], h: ArrayLike) -> Array:

@@ -14,11 +14,10 @@ import numpy as np
 from analytic.arrays import Array, hold
 from analytic.heights import HeightLaw
 from analytic.resolution import resolved_breaks
-from analytic.roots import sign_changes
 
 _SLOW = 5e-3  # seconds for one of thousands of densities: some are integrals of integrals
 _NOISE = 2.0**-30  # of a density that is the exponential of large terms, as of gamma(1e4)
-_NEXT = 1e-8  # as near to the lower end as is as good as there
+_RARE, _NEXT = 1e-9, 1e-8  # share beyond rare heights; how near to an end is as good as there
 _NO_RARER = 1e-300  # share beyond which a law has no heights, if its density ends there:
 _INSIDE, _OUTSIDE = 1e-2, 1e-6  # it is positive so far inside, in standard deviations, and 0 so far outside
 
@@ -119,9 +118,10 @@ class ScipyHeights(HeightLaw):
 
     @cached_property
     def breaks(self) -> tuple[float, ...]:
-        """Heights that cut the density, between its 1e-9 quantiles, into smooth curves."""
-        low, high = self.ppf(np.array(1e-9)), self.isf(np.array(1e-9))
-        return resolved_breaks(_Density(self), float(low), float(high), _NOISE)
+        """Heights that cut the density, between rare heights, into smooth curves."""
+        ends = float(self.ppf(np.array(_RARE))), float(self.isf(np.array(_RARE)))
+        low, high = (end if abs(s - end) < _NEXT else s for s, end in zip(ends, self.support, strict=True))
+        return resolved_breaks(_Density(self), low, high, _NOISE)
 
     @property
     def singular(self) -> tuple[float, ...]:
@@ -144,10 +144,10 @@ class ScipyHeights(HeightLaw):
         """Return its ``pdf``, reduced."""
         return np.asarray(self._mean_std[1] * self.distribution.pdf(self._x(s)))
 
-    def log_ratio(self, s: Array, t: Array) -> Array:
-        """Return the difference of its ``logpdf``."""
-        logpdf, moved = self.distribution.logpdf, np.clip(np.asarray(s) + t, *self.support)
-        return np.asarray(logpdf(self._x(moved)) - logpdf(self._x(s)))
+    def log_pdf(self, s: Array) -> Array:
+        """Return its ``logpdf``, reduced."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(math.log(self._mean_std[1]) + self.distribution.logpdf(self._x(s)))
 
     def cdf(self, s: Array) -> Array:
         """Return its ``cdf``."""
@@ -156,46 +156,6 @@ class ScipyHeights(HeightLaw):
     def sf(self, s: Array) -> Array:
         """Return its ``sf``."""
         return np.asarray(self.distribution.sf(self._x(s)))
-
-    def ppf(self, p: Array, below: float = math.inf) -> Array:
-        """Return its ``ppf``, or where its ``cdf`` is `p`: SciPy loses inverse Gaussian ones at 1e-17."""
-        share, low = np.asarray(p * self.cdf(np.array(below))), self.support[0]
-        with _quiet():
-            s = self._s(self.distribution.ppf(share))
-        s = np.where((share < 0.5) & ~(s <= self._median), low, s)
-        lost = (share > 0) & (s <= low) & np.isfinite(low)
-        if np.any(lost) and self.cdf(np.array(low + _NEXT)) < share[lost].max():
-            s[lost] = self._sought(self.cdf, share[lost], -1.0)
-        return s
-
-    @cached_property
-    def _median(self) -> float:
-        return float(self._s(self.distribution.median()))
-
-    def isf(self, p: Array, above: float = -math.inf) -> Array:
-        """Return its ``isf`` up to an upper end, else the inverse of ``sf``, as far as that tells the tail.
-
-        SciPy's inverse of F takes 1 - p, and is infinite soon; of Rice's law ``sf`` is 1 - ``cdf`` as well.
-        """
-        share = np.asarray(p * self.sf(np.array(above)))
-        if math.isfinite(self.support[1]):
-            s = self._s(self.distribution.isf(share))
-            rare = np.isnan(s)  # SciPy loses beta heights at 1e-280
-        else:
-            s, rare = np.empty(share.shape), share < 0.5
-            s[~rare] = self.ppf(1 - share[~rare])
-        s[rare] = self._sought(self.sf, share[rare], 1.0)
-        return s
-
-    def _sought(self, tail: Callable[[Array], Array], share: Array, step: float) -> Array:
-        """Heights where a tail of the law has these shares, each less than half, one way from the median."""
-        start = far = np.full(share.shape, self._median)
-        with np.errstate(all="ignore"):
-            while np.any(short := tail(far) > share):
-                far, step = np.where(short, np.clip(far + step, *self.support), far), 2 * step
-            return sign_changes(
-                lambda s, which: np.log(share[which]) - np.log(tail(s)), start, far, np.ones(share.shape)
-            )
 
 
 @contextmanager
