@@ -83,13 +83,11 @@ class HeightRule:
         own = radii if isinstance(radii, RandomCurvature) else None
         if not start < top:
             return cls(np.empty(0), np.empty(0), below, None if own is None else np.empty(0))
-        if own is None:
-            ratios, regular = np.ones(1), np.array(regular_edges(heights, start, top))
-        else:
+        ratios, regular = np.ones(1), np.array(regular_edges(heights, start, top))
+        if own is not None:
             curvatures, of_radii = own.rule(h[-1])
-            widest = min(SPANS * own.narrowest, WIDEST)
-            regular = np.linspace(start, top, int(np.ceil((top - start) / widest)) + 1)
-            ratios = MEAN_CURVATURE / curvatures
+            pieces = np.ceil((top - start) / min(SPANS * own.narrowest, WIDEST))
+            ratios, regular = MEAN_CURVATURE / curvatures, np.linspace(start, top, int(pieces) + 1)
         common = np.concatenate([regular, resolved_breaks(grading, start, top), lowest])
         edges, which = [np.tile(common, ratios.size)], [np.repeat(np.arange(ratios.size), common.size)]
         for branch in branches:  # at each separation, which has the radii in turn

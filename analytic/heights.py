@@ -12,7 +12,7 @@ import numpy as np
 from scipy.special import erfcx, gammaln, log_ndtr, ndtri, ndtri_exp
 
 from analytic.arrays import Array
-from analytic.roots import sign_changes
+from analytic.roots import height_between
 
 _FAR = -30.0  # below, where no height is ever drawn, probabilities underflow
 _BEND = 0.5  # change of the logarithm of the density over a span
@@ -82,35 +82,14 @@ class HeightLaw(Protocol):
     def ppf(self, p: Array, below: float = np.inf) -> Array:
         """Return the height at the share `p` of the heights below one, or of all."""
         p, lower, higher = np.asarray(p), self.cdf(np.array(below)), self.sf(np.array(below))
-        found = self._dividing(p * lower, higher + (1 - p) * lower)
+        found = height_between(self, p * lower, higher + (1 - p) * lower)
         return np.minimum(found, below) if lower > 0 else np.full(p.shape, max(below, self.support[0]))
 
     def isf(self, p: Array, above: float = -np.inf) -> Array:
         """Return the height at the share `p` of the heights above one, or of all, counted from the top."""
         p, lower, higher = np.asarray(p), self.cdf(np.array(above)), self.sf(np.array(above))
-        found = self._dividing(lower + (1 - p) * higher, p * higher)
+        found = height_between(self, lower + (1 - p) * higher, p * higher)
         return np.maximum(found, above) if higher > 0 else np.full(p.shape, min(above, self.support[1]))
-
-    def _dividing(self, below: Array, above: Array) -> Array:
-        """Return the heights with these probabilities on either side, by the logarithm of the smaller."""
-        with np.errstate(all="ignore"):
-            low, target = below < above, np.log(np.minimum(below, above))
-            found, some = np.where(low, *self.support), np.isfinite(target)
-            low, target = low[some], target[some]
-
-            def beyond(s: Array, k: Any = slice(None)) -> Array:
-                """How far a height is too high."""
-                upto, over = np.log(self.cdf(s)), np.log(self.sf(s))
-                return np.where(low[k], upto - target[k], target[k] - over)
-
-            (least, most), ones = self.support, np.ones(target.size)
-            left, right = np.maximum(-ones, least), np.minimum(ones, most)
-            while np.any(more := (left > least) & (beyond(left) >= 0)):
-                left = np.where(more, np.maximum(2 * left, least), left)
-            while np.any(more := (right < most) & ~(beyond(right) >= 0)):
-                right = np.where(more, np.minimum(2 * right, most), right)
-            found[some] = sign_changes(beyond, left, right, ones)
-        return found
 
 
 @dataclass(frozen=True)
@@ -311,6 +290,3 @@ class ExponentialHeights(Weibull):
 
     def _power(self, s: Array) -> Array:
         return np.maximum(1 + np.asarray(s), 0.0)
-
-    def _s(self, power: Array) -> Array:
-        return np.asarray(power - 1)

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.arrays import Array, hold
+from analytic.arrays import Array, Ints, hold
 from analytic.heights import HeightLaw
 
 _GROWTH = 1.1  # ratio of the ranks of neighbouring points, counted from the nearer end
@@ -121,21 +121,14 @@ class HeightTable(HeightLaw):
         """Return infinity: between the points the density is constant."""
         return np.inf
 
-    @cached_property
-    def _points(self) -> tuple[Array, Array, Array]:
-        x, p = np.array(self.s), np.array(self.share)
-        return x, p, np.diff(p) / np.diff(x)
-
     def rvs(self, n: int, rng: np.random.Generator) -> Array:
         """Draw by interpolation between the points at uniform fractions."""
-        return np.asarray(np.interp(rng.random(n), self._points[1], self._points[0]))
+        return np.asarray(np.interp(rng.random(n), self._share, self._s))
 
     def pdf(self, s: Array) -> Array:
         """Return the slope of the distribution function."""
-        x, _, slope = self._points
-        piece = np.searchsorted(x, s, side="right") - 1
-        inside = (piece >= 0) & (piece < slope.size)
-        return np.asarray(np.where(inside, slope[np.clip(piece, 0, slope.size - 1)], 0.0))
+        slopes = np.concatenate([[0.0], np.diff(self._share) / np.diff(self._s), [0.0]])
+        return np.asarray(slopes[np.searchsorted(self._s, s, side="right")])
 
     def log_ratio(self, s: Array, t: Array) -> Array:
         """Return 0 up to the next point, which no cell reaches beyond."""
@@ -143,23 +136,27 @@ class HeightTable(HeightLaw):
 
     def cdf(self, s: Array) -> Array:
         """Return the distribution function."""
-        x, p, _ = self._points
-        return np.asarray(np.interp(s, x, p))
+        return np.asarray(np.interp(s, self._s, self._share))
 
     def sf(self, s: Array) -> Array:
-        """Return the upper tail, counted from the top, so that the last fractions keep their digits."""
-        x, p, _ = self._points
-        return np.asarray(np.interp(-np.asarray(s), -x[::-1], 1 - p[::-1]))
+        """Return the upper tail, whose last fractions keep their digits."""
+        return np.asarray(np.interp(s, self._s, 1 - self._share))
 
     def ppf(self, p: Array, below: float = np.inf) -> Array:
         """Return the inverse of the distribution function."""
-        x, share, _ = self._points
-        return np.asarray(np.interp(p * self.cdf(np.array(below)), share, x))
+        return np.asarray(np.interp(p * self.cdf(np.array(below)), self._share, self._s))
 
     def isf(self, p: Array, above: float = -np.inf) -> Array:
         """Return the inverse, counted from the top."""
-        x, share, _ = self._points
-        return np.asarray(np.interp(p * self.sf(np.array(above)), 1 - share[::-1], x[::-1]))
+        return np.asarray(np.interp(p * self.sf(np.array(above)), 1 - self._share[::-1], self._s[::-1]))
+
+    @cached_property
+    def _s(self) -> Array:
+        return np.array(self.s)
+
+    @cached_property
+    def _share(self) -> Array:
+        return np.array(self.share)
 
 
 @dataclass(frozen=True)
@@ -214,11 +211,15 @@ class MeasuredHeights(HeightLaw):
         ValueError
             If they are not drawn, and `n` is not their number.
         """
+        return np.array(self.heights)[self._chosen(n, rng)]
+
+    def _chosen(self, n: int, rng: np.random.Generator) -> Ints:
+        """Numbers of the summits of a surface."""
         if self.resampled:
-            return np.array(self.heights)[rng.integers(0, len(self.heights), n)]
+            return rng.integers(0, len(self.heights), n)
         if n != len(self.heights):
             raise ValueError(f"n = {n}: give {len(self.heights)}, the number of measured heights")
-        return np.array(self.heights)
+        return np.arange(n)
 
     def pdf(self, s: Array) -> Array:
         """Refuse to answer: there is no density; see `span`."""
@@ -287,8 +288,5 @@ class MeasuredRadii:
         ValueError
             If they are not drawn, and `n` is not their number.
         """
-        s, c = np.array(self.heights.heights), np.array(self.ratios)
-        if not self.heights.resampled:
-            return self.heights.rvs(n, rng), c
-        which = rng.integers(0, c.size, n)
-        return s[which], c[which]
+        chosen = self.heights._chosen(n, rng)
+        return np.array(self.heights.heights)[chosen], np.array(self.ratios)[chosen]

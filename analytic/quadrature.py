@@ -27,11 +27,11 @@ WIDEST = 4.0  # piece, on which they resolve the normal density as far down as s
 REACH = 13.0  # no lower or rarer normal height counts: 2e-37 of the density, times a modulus up to exp(3|s|)
 POWER = 4  # of the modulus in the kurtosis
 _GROWTH = 8.0  # of the pieces away from a singular end
-TINY = 1e-14  # distance from such an end, below which heights are not told apart
+_TINY = 1e-14  # distance from such an end, below which heights are not told apart
 _STEP = 2e-3  # of differences: where the mean has 12 digits, those of the slope are off by 1e-9 of the mean
-_NOTHING = -76.0  # logarithm of a density over its largest value, that counts in no sum; sought at distances
+_NOTHING = -76.0  # logarithm of a density over its largest value, that counts in no sum: looked for at
 _OUTWARDS = np.unique(np.concatenate([[0.0], np.geomspace(1e-3, 1e12, 200), np.geomspace(0.1, 1e3, 200)]))
-_UP_TO_END = 1 - np.append(np.geomspace(1, 1e-12, 200), 0.0)  # of a bounded range
+_UP_TO_END = 1 - np.append(np.geomspace(1, 1e-12, 200), 0.0)  # distances, here shares of a bounded range
 _LOST = 40.0  # logarithm of the weight lost outside: 4e-18 of its largest value
 _FARTHER, _MOST_STEPS = 1.1, 1000  # an end is looked for so many times as far, up to 1e38 times
 _ALONG = np.union1d(np.linspace(0, 1, 65), np.geomspace(1e-4, 1, 65))
@@ -108,24 +108,21 @@ def ends_of(
             return limit
         way, room = (1 if limit > start else -1), abs(limit - start)
         away = np.union1d(_OUTWARDS[room > _OUTWARDS], room * _UP_TO_END) if room < np.inf else _OUTWARDS
-        s = start + way * away
-        density = law.log_pdf(s)
+        density = law.log_pdf(start + way * away)
         counts = np.flatnonzero(density > density[density < np.inf].max(initial=-np.inf) + _NOTHING)
-        end = found = float(s[min(counts.max(initial=-1) + 1, s.size - 1)])
+        end = far = float(away[min(counts.max(initial=-1) + 1, away.size - 1)])
         for _ in range(_MOST_STEPS):
-            s = start + (found - start) * _ALONG
-            s[-1] = found
-            weight, modulus = logarithms(s)
-            if abs(found - start) >= room or not weight[-1] > weight.max() - _LOST:
-                if found == end or modulus.max() < steepest:
-                    return found
+            weight, modulus = logarithms(start + way * far * _ALONG)
+            if far == room or not weight[-1] > weight.max() - _LOST:
+                if far == end or modulus.max() < steepest:
+                    return limit if far == room else start + way * far
                 break
             if modulus.max() > steepest:
                 break
-            found = start + way * min(_FARTHER * abs(found - start), room)
+            far = min(_FARTHER * far, room)
         raise ValueError(
-            f"grading: up to s = {found:.4g} E*(s)/E* increases too steeply, or the tail of the heights is "
-            "too heavy, for a mean and a variance in double precision; let the grading level off"
+            f"grading: up to s = {start + way * far:.4g} E*(s)/E* increases too steeply, or the tail of the "
+            "heights is too heavy, for a mean and a variance in double precision; let the grading level off"
         )
 
     steepest = 700.0 - 25.0 * power  # leaves room for the power of the approach
@@ -142,7 +139,7 @@ def regular_edges(law: HeightLaw, start: float, top: float) -> list[float]:
             step = min(SPANS * law.span(a), max(WIDEST, abs(a)))
             for end in law.singular:
                 widest = (_GROWTH - 1) * (a - end) if end <= a else (1 - 1 / _GROWTH) * (end - a)
-                step = min(step, max(widest, TINY * max(1.0, abs(a))))
+                step = min(step, max(widest, _TINY * max(1.0, abs(a))))
             edges.append(min(a + step, mark))
     return edges
 

@@ -1,6 +1,7 @@
-"""Where functions change their sign: of many at once, each between two arguments; separations at a mean."""
+"""Where functions change their sign: of many at once, each between two arguments; heights and separations."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -78,6 +79,29 @@ def sign_changes(
     return found
 
 
+def height_between(law: Any, below: Array, above: Array) -> Array:
+    """Return the heights with these probabilities on either side, by the logarithm of the smaller."""
+    with np.errstate(all="ignore"):
+        low, target = below < above, np.log(np.minimum(below, above))
+        found, some = np.where(low, *law.support), np.isfinite(target)
+        low, target = low[some], target[some]
+
+        def excess(s: Array, which: Ints) -> Array:
+            """How much more than its share is below."""
+            tail, lower = np.empty(s.shape), low[which]
+            tail[lower], tail[~lower] = law.cdf(s[lower]), law.sf(s[~lower])
+            return np.asarray(np.where(lower, 1, -1) * (np.log(tail) - target[which]))
+
+        (least, most), every = law.support, np.arange(target.size)
+        left, right = np.full(every.shape, max(-1.0, least)), np.full(every.shape, min(1.0, most))
+        while np.any(more := (left > least) & (excess(left, every) >= 0)):
+            left = np.where(more, np.maximum(2 * left, least), left)
+        while np.any(more := (right < most) & ~(excess(right, every) >= 0)):
+            right = np.where(more, np.minimum(2 * right, most), right)
+        found[some] = sign_changes(excess, left, right, np.ones(every.size))
+    return np.asarray(found)
+
+
 def last_separations(
     log_mean: Callable[[ArrayLike], Array], log_targets: Array, grid: Array, about: Array, name: str
 ) -> Array:
@@ -88,22 +112,20 @@ def last_separations(
     that is not reached there is a ValueError with the `name`.
     """
     targets = log_targets.ravel()
-    each = np.arange(targets.size)
+    every = np.arange(targets.size)
 
     def excess(h: Array, which: Ints) -> Array:  # -100 also where the mean is not positive
         return np.fmax(log_mean(h) - targets[which], -100.0)
 
-    k = np.array([np.flatnonzero(about >= target).max(initial=0) for target in targets], dtype=np.int64)
-    k = np.minimum(k, grid.size - 2)
-    more = excess(grid[k], each)
-    while (below := (k > 0) & (more < 0)).any():
-        k -= below
-        more = excess(grid[k], each)
-    less = excess(grid[k + 1], each)
-    while (above := (k < grid.size - 2) & (less >= 0)).any():
-        k += above
-        more, less = np.where(above, less, more), excess(grid[k + 1], each)
+    last = grid.size - 1
+    low = np.array([np.flatnonzero(about >= target).max(initial=0) for target in targets], dtype=np.int64)
+    low = np.minimum(low, last - 1)
+    high = low + 1
+    while np.any(deeper := ((more := excess(grid[low], every)) < 0) & (low > 0)):
+        low -= deeper
+    while np.any(farther := ((less := excess(grid[high], every)) >= 0) & (high < last)):
+        high += farther
     if np.any(more < 0) or np.any(less >= 0):
         raise ValueError(f"{name}: not reached for h from {grid[0]:g} to {grid[-1]:.4g}; give another value")
     ends, unit = (less, more), np.ones(targets.size)
-    return sign_changes(excess, grid[k + 1], grid[k], unit, at_ends=ends).reshape(log_targets.shape)
+    return sign_changes(excess, grid[high], grid[low], unit, at_ends=ends).reshape(log_targets.shape)

@@ -2,8 +2,7 @@
 
 import math
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from time import thread_time
@@ -111,7 +110,8 @@ class ScipyHeights(HeightLaw):
     def _end(self, inverse: Callable[[float], Any], outward: float) -> float:
         """Where heights end of which SciPy says that they do not, as Pearson's of type III; or infinity."""
         pdf = self.distribution.pdf
-        with _quiet():
+        with np.errstate(all="ignore"), warnings.catch_warnings():  # Boost's of what it does not find
+            warnings.simplefilter("ignore", RuntimeWarning)
             end = float(inverse(_NO_RARER))
             ends = math.isfinite(end) and pdf(end + _OUTSIDE * outward) == 0 < pdf(end - _INSIDE * outward)
         return end if ends else math.copysign(math.inf, outward)
@@ -132,13 +132,10 @@ class ScipyHeights(HeightLaw):
         mean, std = self._mean_std
         return np.asarray(mean + std * np.asarray(s))
 
-    def _s(self, x: Array) -> Array:
-        mean, std = self._mean_std
-        return np.asarray((np.asarray(x) - mean) / std)
-
     def rvs(self, n: int, rng: np.random.Generator) -> Array:
         """Draw random variates of it, reduced."""
-        return self._s(self.distribution.rvs(size=n, random_state=rng))
+        mean, std = self._mean_std
+        return np.asarray((self.distribution.rvs(size=n, random_state=rng) - mean) / std)
 
     def pdf(self, s: Array) -> Array:
         """Return its ``pdf``, reduced."""
@@ -156,14 +153,6 @@ class ScipyHeights(HeightLaw):
     def sf(self, s: Array) -> Array:
         """Return its ``sf``."""
         return np.asarray(self.distribution.sf(self._x(s)))
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Without warnings of NumPy, and Boost's of what it does not find."""
-    with np.errstate(all="ignore"), warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)
-        yield
 
 
 def _without_place(distribution: Any) -> Any:

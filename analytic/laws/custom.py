@@ -150,11 +150,9 @@ class CustomLaw(ElasticPlastic):
             If a formula is no smooth function on its piece.
         """
         assert self.critical is not None
-        x_max = deepest / self.critical
-        kept = [x for x in self.edges if x < x_max]
-        ends = np.sqrt([*kept, x_max]).tolist()
-        starts = [-ends[0], *ends[:-1]]
-        pairs = list(zip(starts, ends, strict=True))
+        kept = [x for x in self.edges if x * self.critical < deepest]
+        ends = np.sqrt([*kept, deepest / self.critical]).tolist()
+        pairs = list(zip([-ends[0], *ends[:-1]], ends, strict=True))
         load, area = (
             [_resolved_in_root(f"{name}[{k}]", formulas[k], *pair) for k, pair in enumerate(pairs)]
             for name, formulas in self._formulas().items()
