@@ -54,9 +54,7 @@ def against_separation(f: Compared, *, title: str, quantity: str, words: str, un
     panels = []
     for name, labels in f.groups:
         series = tuple(over_separation(f, label, Mean((quantity,), factor=1 / size)) for label in labels)
-        positive = all(np.all(s.theory >= 0) and np.any(s.theory > 0) for s in series)
-        scales, level = (("linear", "log"), None) if positive else (("linear", "linear"), 0.0)
-        panels.append(Panel(name, SEPARATION, ylabel, series, scales, level))
+        panels.append(Panel(name, SEPARATION, ylabel, series, ("linear", "log")))
     return FigureData(title, f.caption(), tuple(panels))
 
 

@@ -96,7 +96,7 @@ def draw(data: FigureData) -> Figure:
     narrow += ["."] * (-len(narrow) % columns)
     rows = [narrow[k : k + columns] for k in range(0, len(narrow), columns)]
     rows += [[k] * columns for k, panel in enumerate(data.panels) if panel.wide]
-    checked = {k for k, panel in enumerate(data.panels) if any(p.varies.any() for *_, p in _known(panel))}
+    checked = {k for k, panel in enumerate(data.panels) if any(p.varies.any() for _, p in _known(panel))}
     places = [line for row in rows for line in (row, [f"below {k}" if k in checked else k for k in row])]
     with mpl.rc_context(PANELS):
         size = max(_WIDTH * columns, _NARROWEST), len(rows) * (_TALL + bool(checked) * _RESIDUAL) + _TEXTS
@@ -130,23 +130,24 @@ def _wrapped(text: str, width: int) -> str:
     return "\n".join(line for part in text.splitlines() for line in textwrap.wrap(part, width))
 
 
-def _known(panel: Panel) -> list[tuple[int, Series, Points]]:
-    """Series with points, and which of the panel they are."""
-    return [(k, s, s.points) for k, s in enumerate(panel.series) if s.points is not None]
+def _known(panel: Panel) -> list[tuple[dict[str, Any], Points]]:
+    """Look of points and these, series by series."""
+    return [(_marks(s, k), s.points) for k, s in enumerate(panel.series) if s.points is not None]
 
 
 def draw_panel(axis: Any, panel: Panel) -> None:
-    """Draw lines and the points on them."""
+    """Draw lines and the points on them; a logarithmic axis shows neither pulls nor 0 alone."""
     lines = np.concatenate([np.empty(0), *(x.theory for x in panel.series)])
-    logarithmic = panel.scales[1] == "log" and bool(np.any(lines > 0))  # a log axis cannot show 0 alone
+    means = np.concatenate([np.empty(0), *(points.mean for _, points in _known(panel))])
+    pulls = panel.scales[1] == "log" and bool(np.any(lines < 0) or np.any(means < 0))
+    logarithmic = panel.scales[1] == "log" and bool(np.any(lines > 0)) and not pulls
     yscale = panel.scales[1] if logarithmic or not panel.series else "linear"
     axis.set(xlabel=panel.xlabel, ylabel=panel.ylabel, xscale=panel.scales[0], yscale=yscale)
-    if panel.level is not None:
-        axis.axhline(panel.level, color=LEVEL, lw=0.8, zorder=1)
+    if (level := 0.0 if pulls else panel.level) is not None:
+        axis.axhline(level, color=LEVEL, lw=0.8, zorder=1)
     for k, series in enumerate(panel.series):
         _draw_series(axis, series, k, logarithmic)
     if logarithmic:
-        means = np.concatenate([np.empty(0), *(p.mean for *_, p in _known(panel))])
         touches = np.any(means == 0) and np.any(means > 0)
         axis.set_ylim(bottom=_UNSEEN * means[means > 0].min() if touches else 0.6 * lines[lines > 0].min())
     axis.set_title(panel.title)
@@ -197,8 +198,7 @@ def _draw_series(axis: Any, series: Series, k: int, logarithmic: bool) -> None:
 def _draw_residuals(axis: Any, panel: Panel, *, labelled: bool) -> None:
     """Draw residuals over the band in which 95 % of them lie."""
     reach = 4.0
-    for k, series, points in _known(panel):
-        found = _marks(series, k)
+    for found, points in _known(panel):
         x, z = points.x[points.varies], points.residual[points.varies]
         if panel.xlabel == GAMMA and z.size and np.ptp(z) < _SAME:  # of the same surfaces: one for all gamma
             axis.plot(x[[0, -1]], z[[0, -1]], color=found["color"], lw=0.8)

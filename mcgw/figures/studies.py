@@ -65,9 +65,8 @@ def quantity_panel(comparison: Comparison, name: str) -> Panel:
     points = comparison.curves[name]
     order = np.argsort(points.x, kind="stable")
     series = Series("theory", points.x[order], points.theory[order], points)
-    pulls = bool(np.any(points.theory < 0) or np.any(points.mean < 0))  # it does not fit a log axis
-    scales, level = (("linear", "linear"), 0.0) if pulls else (("linear", "log"), None)
-    return Panel(comparison.ensemble.scene.quantity(name).title, SEPARATION, "", (series,), scales, level)
+    title = comparison.ensemble.scene.quantity(name).title
+    return Panel(title, SEPARATION, "", (series,), ("linear", "log"))
 
 
 def spread_panel(title: str, ensemble: Ensemble, line: Array, names: Sequence[str] = ()) -> Panel:

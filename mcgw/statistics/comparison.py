@@ -108,18 +108,10 @@ class Comparison(Drawn):
 
 @dataclass(frozen=True, repr=False)
 class SweepComparison(Drawn):
-    """A comparison of a sweep with theory.
-
-    Parameters
-    ----------
-    sweep : Sweep
-        What was compared.
-    points : tuple of Tested
-        The points that can be tested: those whose surfaces fluctuate as real ones do.
-    """
+    """A comparison of a sweep with theory."""
 
     sweep: "Sweep"
-    points: tuple[Tested, ...]
+    points: tuple[Tested, ...]  # that can be tested: those whose surfaces fluctuate as real ones do
 
     @property
     def verdict(self) -> Check:

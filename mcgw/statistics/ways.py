@@ -5,6 +5,7 @@ and for a whole distribution the largest difference of a probability, which Kolm
 """
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from math import ceil, inf, nan, sqrt
 
@@ -58,16 +59,13 @@ def drawn_by(scene: Scene, way: str) -> Scene:
 
 def sampled_ways(scene: Scene) -> list[str]:
     """Names of the ways that draw surfaces of a scene, first the one that ``auto`` takes."""
-
-    def fits(name: str) -> bool:
-        try:
+    first, found = expected(scene.replace(sampler="auto")).name, []
+    for name in dict.fromkeys((first, "cells", "tail", "direct", "aggregate", SOLVE)):
+        with suppress(SceneError):
             sampler = drawn_by(scene, name).sampler
-        except SceneError:
-            return False
-        return scene.summits is None or promise_of(sampler).one_by_one
-
-    first = expected(scene.replace(sampler="auto")).name
-    return [*filter(fits, dict.fromkeys((first, "cells", "tail", "direct", "aggregate", SOLVE)))]
+            if scene.summits is None or promise_of(sampler).one_by_one:
+                found.append(name)
+    return found
 
 
 def wants_of(name: str) -> tuple[str, ...]:
