@@ -123,23 +123,20 @@ def mean_moduli(f: Compared) -> FigureData:
 def fluctuations(f: Compared) -> FigureData:
     """Show the standard deviation over the mean: of a sweep from a hundred asperities to a million."""
     if not f.swept:
-        panel = replace(spread_panel("", f.drawn(SCENE), f.line, _SPREADING), level=1.0)
+        panel = replace(spread_panel("", f.drawn(SCENE, f.h), f.line, _SPREADING), level=1.0)
         size = f"{f.scene.surface.nominal_area * 1e6:g} mm²"
         return FigureData(f"Scatter of surfaces of {size}", f.caption(), (panel,))
     scene = f.scene.replace(keep="sums", separations=np.linspace(0, 4, 9), quantities=_SPREADING)
+    scenes = {n: scene.replace(n_asperities=n) for n in (100, 1000, 10_000, 100_000, 1_000_000)}
     sizes = {n: min(2000, 400_000_000 // n) for n in (100, 10_000, 1_000_000)}
-    drawn = {n: simulate(scene.replace(n_asperities=n, n_surfaces=m)) for n, m in sizes.items()}
+    drawn = {n: simulate(scenes[n], n_surfaces=surfaces) for n, surfaces in sizes.items()}
     line, panels = np.linspace(0, 4, 41), []
     for key, name in zip("abc", scene.quantities, strict=True):
-        series = tuple(
-            spread(f"N = {power_of_ten(n)}", scene.replace(n_asperities=n), name, line, drawn.get(n), 400)
-            for n in (100, 1000, 10_000, 100_000, 1_000_000)
-        )
+        labelled = ((f"N = {power_of_ten(n)}", one, drawn.get(n)) for n, one in scenes.items())
+        series = tuple(spread(label, one, name, line, seen, 400) for label, one, seen in labelled)
         panels.append(Panel(f"{key}  {name}", SEPARATION, "std / mean", series, ("linear", "log"), 1.0))
-    caption = (
-        f"N asperities per surface; 2000 surfaces (400 for N = 10⁶), seed {scene.seed}. Markers with 95 % "
-        "intervals, for 400 contacts or more."
-    )
+    number = f"2000 surfaces (400 for N = 10⁶), seed {scene.seed}"
+    caption = f"N asperities per surface; {number}. Markers with 95 % intervals, for 400 contacts or more."
     return FigureData("Scatter of finite surfaces", caption, tuple(panels))
 
 

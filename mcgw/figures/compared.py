@@ -63,8 +63,8 @@ class Compared:
 
     def __init__(self, asked: Scene, swept: bool = False, most_listed: int = 100) -> None:
         self.swept, self.most_listed = swept, most_listed  # surfaces whose heights are listed one by one
-        self.scene = _of_paper(asked) if swept else _pressed_once(asked)
-        self.all = _graded(self.scene) if swept else _simpler(self.scene)  # by label
+        self.scene, self.all, self.line = _swept(asked) if swept else _beside(asked)
+        self.h = np.array(self.scene.separations)  # of the points; more of the lines
         labels = tuple(self.all)
         self.reference = "γ = 1" if swept else labels[-1]  # of ratios: the simplest
         self.others = tuple(label for label in labels if label != self.reference)
@@ -72,10 +72,6 @@ class Compared:
         one = labels.index(self.reference)  # titles of panels, and labels of what they show together:
         halves = (("a  stiffer tips", labels[: one + 1]), ("b  softer tips", labels[one:]))
         self.groups = halves if swept else (("", labels),)
-        self.h = np.array(self.scene.separations)  # of the points
-        fine = _FINE if self.scene.summits is None else _COARSE
-        ends = (0, 4, 161) if swept else (self.h.min(), self.h.max(), fine if len(self.h) > 1 else 1)
-        self.line = np.linspace(*ends)  # separations of the lines
         self._kept: dict[Any, Any] = {}
 
     def of(self, key: Key) -> Scene:
@@ -95,15 +91,14 @@ class Compared:
         return np.where(np.abs(found - h) < 1e-12, h, found)  # of searches for the same load
 
     @_once
-    def drawn(self, key: Key, h: Array | None = None) -> Ensemble:
-        """Ensemble on the same surfaces, at the separations of the scene or at others."""
-        changes: dict[str, Any] = {} if h is None else {"separations": h}
-        return simulate(self.of(key), **changes)
+    def drawn(self, key: Key, h: Array) -> Ensemble:
+        """Ensemble on the same surfaces at some separations."""
+        return simulate(self.of(key), separations=h)
 
     def values(self, key: Key, quantity: str, h: Array) -> Array:
         """Return the sums of each surface at some of the separations of the scene, or at others."""
         if np.isin(h, self.h).all():
-            return np.asarray(self.drawn(key).values(quantity)[:, np.searchsorted(self.h, h)])
+            return np.asarray(self.drawn(key, self.h).values(quantity)[:, np.searchsorted(self.h, h)])
         return np.asarray(self.drawn(key, h).values(quantity))
 
     @cached_property
@@ -123,34 +118,29 @@ class Compared:
             law = short(law_text(self.scene.heights))
             said.append(f"This scene: {contact_label(self.scene)}{pressed}; heights {law}.")
         if surfaces > 1:
-            said.append(
-                f"Markers: Monte-Carlo means with 95 % intervals, {surfaces} surfaces of "
-                f"{self.scene.n_asperities:g} asperities, seed {self.scene.seed}, the same for all "
-                f"{'γ' if self.swept else 'lines'}."
-            )
+            drawn = f"{surfaces} surfaces of {self.scene.n_asperities:g} asperities, seed {self.scene.seed}"
+            alike = f"the same for all {'γ' if self.swept else 'lines'}"
+            said.append(f"Markers: Monte-Carlo means with 95 % intervals, {drawn}, {alike}.")
         return " ".join([*said, "Lines: theory."] if surfaces else said)
 
 
-def _of_paper(scene: Scene) -> Scene:
+def _swept(scene: Scene) -> tuple[Scene, dict[str, Scene], Array]:
+    """Return what is drawn, the same with the gradings of the paper by label, and separations of lines."""
     h = np.linspace(0, 4, 17)
-    return scene.replace(grading=Homogeneous(), separations=h, quantities=tuple(QUANTITIES))
+    scene = scene.replace(grading=Homogeneous(), separations=h, quantities=tuple(QUANTITIES))
+    graded = {g: scene if g == 1 else scene.replace(grading=Exponential(g)) for g in _GAMMAS}
+    return scene, {f"γ = {g:g}": one for g, one in graded.items()}, np.linspace(0, 4, 161)
 
 
-def _pressed_once(scene: Scene) -> Scene:
+def _beside(scene: Scene) -> tuple[Scene, dict[str, Scene], Array]:
+    """Return what is drawn, the same and simpler ones by label, and separations of lines."""
     h = np.unique(scene.separations)
+    h = h[evenly(len(h), _MOST_SEPARATIONS)]
     cheap = _MOST_ASPERITIES // scene.n_asperities
-    return scene.replace(
-        separations=h[evenly(len(h), _MOST_SEPARATIONS)], quantities=tuple(QUANTITIES),
-        n_surfaces=max(min(scene.n_surfaces, _MOST_SURFACES, cheap), 1),
-        unload_from=None, joint=None, keep="sums", rel_err=None, max_seconds=None,
+    scene = scene.replace(
+        separations=h, quantities=tuple(QUANTITIES), unload_from=None, joint=None, keep="sums", rel_err=None,
+        n_surfaces=max(min(scene.n_surfaces, _MOST_SURFACES, cheap), 1), max_seconds=None,
     )  # fmt: skip
-
-
-def _graded(scene: Scene) -> dict[str, Scene]:
-    return {f"γ = {g:g}": scene.replace(grading=Exponential(g)) if g != 1 else scene for g in _GAMMAS}
-
-
-def _simpler(scene: Scene) -> dict[str, Scene]:
     found = {SCENE: scene}
     if scene.interaction is not None:
         found["independent"] = scene.replace(interaction=None)
@@ -158,7 +148,8 @@ def _simpler(scene: Scene) -> dict[str, Scene]:
         found["homogeneous"] = scene.replace(grading=Homogeneous())
     if type(scene.law) is not Hertz:
         found["homogeneous, Hertz"] = scene.replace(grading=Homogeneous(), law=Hertz())
-    return found
+    fine = _FINE if scene.summits is None else _COARSE
+    return scene, found, np.linspace(h.min(), h.max(), fine if len(h) > 1 else 1)
 
 
 def _ratio(above: Sequence[Array], below: Sequence[Array]) -> Estimate:

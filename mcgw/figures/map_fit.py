@@ -28,18 +28,18 @@ _BARS: Any = {"bins": "auto", "density": True, "color": SAMPLE, "label": "summit
 def fit_figure(fit: Fit, raw: Topography, ready: Prepared) -> FigureData:
     """Show the fit of a map, as it was read and as it was prepared."""
     missing = f", {raw.missing} points missing" if raw.missing else ""
-    paints = (
-        partial(_draw_map, raw, None, f"a  as read{missing}"),
-        partial(_draw_summits, fit, ready),
-        partial(_draw_moments, ready),
-        partial(draw_heights, fit),
-        partial(_draw_curvatures, fit),
-        partial(_draw_listing, fit),
+    panels = (
+        Panel(f"a  as read{missing}", paint=partial(_draw_map, raw, None)),
+        Panel(paint=partial(_draw_summits, fit, ready)),
+        Panel("c  moments against cutoff", paint=partial(_draw_moments, ready)),
+        Panel("d  summit heights", paint=partial(draw_heights, fit)),
+        Panel("e  summit curvatures", paint=partial(_draw_curvatures, fit)),
+        Panel("f  estimates", paint=partial(_draw_listing, fit)),
     )
-    return FigureData("", "", tuple(Panel(paint=paint) for paint in paints))
+    return FigureData("", "", panels)
 
 
-def _draw_map(topography: Topography, seen: Marks | None, title: str, axis: Any) -> None:
+def _draw_map(topography: Topography, seen: Marks | None, axis: Any) -> None:
     """Heights in grey; points that do not count have a colour."""
     every = tuple(slice(None, None, max(n // _POINTS, 1)) for n in topography.heights.shape)
     z = topography.heights[every]
@@ -54,7 +54,7 @@ def _draw_map(topography: Topography, seen: Marks | None, title: str, axis: Any)
     )  # fmt: skip
     axis.grid(visible=False)
     axis.figure.colorbar(image, ax=axis, label=f"height ({prefix}m)", shrink=0.8)
-    axis.set(title=title, xlabel=f"x ({of_sides}m)", ylabel=f"y ({of_sides}m)")
+    axis.set(xlabel=f"x ({of_sides}m)", ylabel=f"y ({of_sides}m)")
 
 
 def _draw_summits(fit: Fit, ready: Prepared, axis: Any) -> None:
@@ -66,7 +66,8 @@ def _draw_summits(fit: Fit, ready: Prepared, axis: Any) -> None:
     listed = (fit.listed.x, fit.listed.y)
     x, y = ((place[some] - margin) / unit for place, margin in zip(listed, margins, strict=True))
     shown = "" if x.size == fit.summits.size else f", {x.size} shown"
-    _draw_map(used, ready.seen, f"b  as analysed: {fit.summits.size} summits{shown}", axis)
+    _draw_map(used, ready.seen, axis)
+    axis.set_title(f"b  as analysed: {fit.summits.size} summits{shown}")
     size = max(0.4, min(3.0, 90 / np.sqrt(x.size)))
     axis.plot(x, y, "o", ms=size, color=MARKED, mew=0)
 
@@ -86,7 +87,7 @@ def _draw_moments(ready: Prepared, axis: Any) -> None:
         over = values / values[0]
         axis.plot(cutoffs[: len(rows)] / unit, over, **look(name), ms=4, mfc="white", label=name)
     label = "over those at the first cutoff"
-    axis.set(title="c  moments against cutoff", xlabel=f"cutoff ({prefix}m)", ylabel=label)
+    axis.set(xlabel=f"cutoff ({prefix}m)", ylabel=label)
 
 
 def draw_heights(fit: Fit, axis: Any) -> None:
@@ -97,7 +98,8 @@ def draw_heights(fit: Fit, axis: Any) -> None:
     with suppress(ValueError):  # no isotropic surface has such an alpha
         axis.plot(z, Nayak(alpha).pdf(z), color=THEORY, label=f"Nayak, α = {alpha:.3g}")
     label = "summit height, about its mean, over its std"
-    axis.set(title="d  summit heights", xlabel=label, ylabel="density")
+    title = f"{fit.summits.size} summits, sigma = {fit.summits.std():.4g} m"
+    axis.set(title=title, xlabel=label, ylabel="density")
 
 
 def _draw_curvatures(fit: Fit, axis: Any) -> None:
@@ -108,9 +110,7 @@ def _draw_curvatures(fit: Fit, axis: Any) -> None:
     density = np.sqrt(3) / (2 * np.sqrt(np.pi)) * (t**2 - 2 + 2 * np.exp(-(t**2) / 2)) * np.exp(-(t**2) / 4)
     axis.hist(k[(k > 0) & (k < 3)], **_BARS)
     axis.plot(x, mean * density, color=THEORY, label="Gaussian surface")
-    axis.set(
-        title="e  summit curvatures", xlabel="mean curvature over its mean", ylabel="density", xlim=(0, 3)
-    )
+    axis.set(xlabel="mean curvature over its mean", ylabel="density", xlim=(0, 3))
 
 
 def _draw_listing(fit: Fit, axis: Any) -> None:
@@ -126,7 +126,6 @@ def _draw_listing(fit: Fit, axis: Any) -> None:
         lines += textwrap.wrap(text, _WIDTH, subsequent_indent="  ")
     shown = lines if len(lines) <= _LINES else [*lines[: _LINES - 1], "..."]
     words("\n".join(shown), axis, (0, 1), va="top", ha="left", family="monospace", fontsize=6.6)
-    axis.set_title("f  estimates")
 
 
 def _arms(x: Uncertain) -> str:

@@ -52,7 +52,7 @@ def words(text: str, axis: Any, at: tuple[float, float] = (0.5, 0.5), **look: An
 class Panel:
     """One pair of axes."""
 
-    title: str = ""
+    title: str | None = None  # default: what it paints has one of its own
     xlabel: str = ""
     ylabel: str = ""
     series: tuple[Series, ...] = ()  # lines of theory and points
@@ -77,7 +77,7 @@ def figure_table(figure: FigureData) -> Table:
     """Every number of a figure."""
     rows: list[tuple[float | str, ...]] = []
     for panel, series in ((one, series) for one in figure.panels for series in one.series):
-        about, p = (panel.title, series.label), series.points
+        about, p = (panel.title or "", series.label), series.points
         rows += [(*about, "line", *at, "", "") for at in zip(series.x, series.theory, strict=True)]
         if p:
             rows += [(*about, "point", *at) for at in zip(p.x, p.theory, p.mean, p.stderr, strict=True)]
@@ -150,8 +150,9 @@ def draw_panel(axis: Any, panel: Panel) -> None:
     if logarithmic:
         touches = np.any(means == 0) and np.any(means > 0)
         axis.set_ylim(bottom=_UNSEEN * means[means > 0].min() if touches else 0.6 * lines[lines > 0].min())
-    axis.set_title(panel.title)
     panel.paint(axis)
+    if panel.title is not None:
+        axis.set_title(panel.title)
 
 
 def keys(axes: Sequence[Any]) -> dict[str, Any]:
@@ -216,9 +217,9 @@ def _draw_residuals(axis: Any, panel: Panel, *, labelled: bool) -> None:
 def save(data: FigureData, *paths: Path) -> None:
     """Draw a figure into files, whose endings choose the format: .png, .pdf, .svg; .csv for its numbers."""
     figure = draw(data)
-    for path in paths:
-        if path.suffix == ".csv":
-            figure_table(data).write(path)
-        else:
-            with mpl.rc_context(STYLE):
+    with mpl.rc_context(STYLE):
+        for path in paths:
+            if path.suffix == ".csv":
+                figure_table(data).write(path)
+            else:
                 save_figure(figure, path)

@@ -92,19 +92,8 @@ def _(result: SweepComparison, axis: Any) -> None:
     draw_residuals(result.residuals, axis)
 
 
-@draw_on.register
-def _(result: Convergence, axis: Any) -> None:
-    draw_checks(result, axis)
-    title = f"Statistical convergence {result.word}: p = {result.p:.3g}"
-    axis.set(title=title, xlabel="probability by chance; grey: fails")
-
-
-@draw_on.register
-def _(result: Fit, axis: Any) -> None:
-    draw_heights(result, axis)
-    axis.set_title(f"{result.summits.size} summits, sigma = {result.summits.std():.4g} m")
-
-
+draw_on.register(Convergence, draw_checks)
+draw_on.register(Fit, draw_heights)
 draw_on.register(Tradeoff, draw_errors)
 
 

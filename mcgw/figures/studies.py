@@ -130,15 +130,15 @@ def _draw_worst(comparison: SweepComparison, axis: Any) -> None:
 
 def convergence_figure(found: "Convergence") -> FigureData:
     """Slopes of the error, z-scores, and the probability of every check."""
-    parts = {name: partial(words, f"slope in {name}: too few contacts") for name in ("M", "N")}
-    parts |= {curve.against: partial(_draw_slope, curve) for curve in found.slopes}
-    few = partial(words, "z-scores: too few contacts")
-    scores = Panel("z-scores", paint=partial(draw_residuals, found.scores))
+    names = ("slope in M", "slope in N", "z-scores")
+    parts = {name: Panel(paint=partial(words, f"{name}: too few contacts")) for name in names}
+    parts |= {f"slope in {curve.against}": Panel(paint=partial(_draw_slope, curve)) for curve in found.slopes}
+    if found.scores.size:
+        parts["z-scores"] = Panel("z-scores", paint=partial(draw_residuals, found.scores))
     said = f"Statistical convergence {found.word}: p = {found.p:.3g} over {len(found.checks)} checks"
     title = f"{shown_title(found.scene, 'Scene')}\n{said} (false alarms: 1 in {1 / FALSE_ALARM:.0f})"
-    checks = Panel(paint=partial(draw_checks, found), wide=True)
-    slopes = (Panel(paint=paint) for paint in parts.values())
-    return FigureData(title, "", (*slopes, scores if found.scores.size else Panel(paint=few), checks))
+    checks = Panel("", paint=partial(draw_checks, found), wide=True)
+    return FigureData(title, "", (*parts.values(), checks))
 
 
 def _draw_slope(curve: "Slope", axis: Any) -> None:
@@ -167,7 +167,8 @@ def draw_checks(found: "Convergence", axis: Any) -> None:
     for some, color, marker in ((p > limit, style.THEORY, "o"), (p <= limit, style.MONTE_CARLO, "X")):
         axis.scatter(p[some], rows[some], color=color, marker=marker, s=28, zorder=3)
     axis.set(xlim=(_LEAST / 3, 2.5), ylim=(-0.7, len(p) - 0.3))
-    axis.set_xlabel("probability by chance; grey: fails (the far left stands for all below 10⁻¹²)")
+    axis.set_xlabel("probability by chance; grey: fails (all below 10⁻¹² at the far left)")
+    axis.set_title(f"Statistical convergence {found.word}: p = {found.p:.3g}")
     axis.set_yticks(rows, [check.name for check in found.checks])
 
 

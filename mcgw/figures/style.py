@@ -55,12 +55,9 @@ FAMILIES: tuple[tuple[str, ...], ...] = (  # what one figure may show together, 
     ("own radii", "one radius", "nayak", "measured summits"),
     ("$m_0$", "$m_2$", "$m_4$"),
 )
-PAIRS: tuple[tuple[str, ...], ...] = (
-    ("loading", "unloading"),
-    ("interacting", "independent"),
-    ("exact", "Gaussian"),
-    ("theory", "Monte Carlo"),
-)
+PAIRS = (
+    ("loading", "unloading"), ("interacting", "independent"), ("exact", "Gaussian"), ("theory", "Monte Carlo")
+)  # fmt: skip
 
 
 def _of(color: str, place: int) -> dict[str, Any]:
@@ -101,8 +98,7 @@ _LOWERED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
 
 def prefixed(largest: float) -> tuple[float, str]:
     """Return a power of a thousand that leaves 1 to 1000 of a number, and its prefix: 2.5e6 -> (1e6, "M")."""
-    power = math.floor(math.log10(largest) / 3) if largest > 0 else 0
-    power = min(max(power, -5), 5)
+    power = min(max(math.floor(math.log10(largest) / 3), -5), 5) if largest > 0 else 0
     return 1000.0**power, "fpnµm kMGTP"[power + 5].strip()
 
 

@@ -236,8 +236,7 @@ def worth(ladder: Sequence[Rung], unknown: str) -> str:
 def ladder_of(scene: Scene, alone: Scene, load: float, ways: Sequence[Way], model: float) -> Iterator[Rung]:
     """Yield the rungs of a scene whose model is so far off; `alone`: its asperities at the separation."""
     by = {way.name: way for way in ways if way.want == "conductance"}
-    theory = by["theory"]
-    yield Rung("formula", 0, theory.seconds(0), theory.floor, model)
+    yield Rung("formula", 0, by["theory"].seconds(0), by["theory"].floor, model)
     for n in (2, 10, 100, 1000, 10_000, 100_000) if SOLVE in by else ():
         yield Rung("surfaces", n, by[SOLVE].seconds(n), of_one(alone, "conductance") / n**0.5, model)
     with suppress(ValueError, RunError):  # without a spectrum, or Tamaas, the ladder ends here
