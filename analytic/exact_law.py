@@ -177,8 +177,7 @@ def one_asperity(model: Any, quantity: str, h: float, cells: int, number: float 
     rule, lowest = model.rule([h], [quantity]), min(h, model.ways.of(quantity).lowest(h))
     at_nodes = rule.terms([quantity], [h], model.grading, model.ways)
     low, high, shares = in_cells(model, [quantity], h, rule, at_nodes, cells, lowest)
-    number = model.number if number is None else number
-    return OneAsperity((low[:, 0], high[:, 0]), shares, number, model.count == "poisson")
+    return OneAsperity((low[:, 0], high[:, 0]), shares, number or model.number, model.count == "poisson")
 
 
 def in_cells(
@@ -199,9 +198,8 @@ def in_cells(
     first = np.append(True, np.diff(radius) != 0)  # height of a radius
     start = np.where(first, max(lowest, model.heights.support[0]), np.append(0.0, s[:-1]))
     wide = np.repeat((s - start) / parts, parts)
-    left = (
-        np.repeat(start, parts) + (np.arange(wide.size) - np.repeat(np.cumsum(parts) - parts, parts)) * wide
-    )
+    number = np.arange(wide.size) - np.repeat(np.cumsum(parts) - parts, parts)  # of a cell below its node
+    left = np.repeat(start, parts) + number * wide
     middle, which, radius = left + wide / 2, np.cumsum(first) - 1, np.repeat(radius, parts)
     if ratios is None:
         own = wide * model.heights.pdf(middle)

@@ -192,27 +192,19 @@ class Answer:
 
 def answer_of(model: Any, q: Quantity) -> Answer | None:
     """Return how a quantity follows from sums; None if it is one itself."""
-    way = "_unloading" if q.unloading else ""
-    load, sunk, how = f"load{way}", model.compliance, model.interaction
+    way, how, surface = "_unloading" if q.unloading else "", model.interaction, model.surface
+    load, rho = f"load{way}", 1.0 if model.film is None else model.film.rho
     if q.name in SEPARATIONS:
-        return Answer("", load, sunk=sunk, at_plane=_itself)
+        return Answer("", load, sunk=model.compliance, at_plane=_itself)
+    spots = q.name
+    if q.name in JOINT:
+        spots = f"conductance_si{way}" if q.name.startswith("joint") else ""
+    series = how.series(spots, surface, model.number, rho) if how and spots else 0.0
     if q.name not in JOINT:
-        series = _series(model, q.name)
-        return Answer(q.name, load, series=series) if series else None
-    spots = f"conductance_si{way}" if q.name.startswith("joint") else ""
-    from_body = how is not None and how.reference == "body"
-    bodies = how.bodies(model.surface, model.film.rho) if spots and how and model.film else 0.0
-    series, sunk = (0.0, 0.0) if from_body else (_series(model, spots) if spots else 0.0, sunk)
-    return Answer(spots, load, model.surface.nominal_area, series, sunk, bodies, at_plane=model.filled)
-
-
-def _series(model: Any, quantity: str) -> float:
-    """Return what the half-space adds to the inverse of a sum: `analytic.Interaction.series`."""
-    if model.interaction is None:
-        return 0.0
-    rho = 1.0 if model.film is None else model.film.rho
-    series: float = model.interaction.series(quantity, model.surface, model.number, rho)
-    return series
+        return Answer(spots, load, series=series) if series else None
+    bodies = how.bodies(surface, rho) if how and spots else 0.0
+    series, sunk = (0.0, 0.0) if how and how.reference == "body" else (series, model.compliance)
+    return Answer(spots, load, surface.nominal_area, series, sunk, bodies, at_plane=model.filled)
 
 
 def asked(model: Any, quantity: str, h: ArrayLike = np.inf) -> Quantity:
