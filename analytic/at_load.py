@@ -64,7 +64,7 @@ def specimen_moments(model: Any, given: str, value: float, names: Sequence[str])
     places, scores = normal_scores(model, given, value, wide=3.0)  # fewer than a law needs: they place nodes
     if scores[0] > -SCORES or scores[-1] < SCORES:  # a Poisson number of asperities may be 0
         raise ValueError(f"{given} = {value:g}: not every surface has a separation with it")
-    ends = np.interp([-SCORES, 0.0, SCORES], np.maximum.accumulate(scores), places).tolist()  # next to all
+    ends = np.interp([-SCORES, 0.0, SCORES], np.maximum.accumulate(scores), places).tolist()
     several, found, contacts = [given, *names], np.zeros(2), float(model.mean("contacts", ends[1]))
     last = _at_last(model, several, value, ends[-1])
     for times in (1, 2, 4):
@@ -181,9 +181,9 @@ def _beside(left: Array, cells: Array, bear: Array, none: float) -> Callable[[Ar
 
 def _deepest(model: Any, given: str, value: float, h: Array, ratios: Array | None = None) -> Array:
     """Penetrations over sigma at which one asperity alone has a value, by separation and ratio of radii."""
-    penetrations, own = np.geomspace(1e-12, 20.0, 2048), model.ways.of(given)  # which no asperity reaches
+    penetrations, own = np.geomspace(1e-12, 20.0, 2048), model.ways.of(given)
     own = own if ratios is None else own.with_radii(ratios)
     s = h + penetrations[:, None]
     added = own.terms([given], h, s, model.grading(s))[0] * quantity_of(given).scale(model.surface)
-    columns = np.log(np.maximum(added, 1e-300)).T  # of log(penetration) they are next to straight
+    columns = np.log(np.maximum(added, 1e-300)).T  # next to linear in the logarithm of the penetration
     return np.exp([np.interp(math.log(value), column, np.log(penetrations)) for column in columns])
