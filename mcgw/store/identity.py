@@ -56,12 +56,10 @@ def another(where: Path, kind: str, there: Question, here: Question) -> StoreErr
 def difference(there: Question, here: Question) -> str:
     """Tell what keeps two runs, or two sweeps, from being one: scene, axes and what draws, of each."""
     before, now = _said(*there[:2]), _said(*here[:2])
-    for key, value in now.items():
-        if before.get(key) != value:
-            return f"{key} is {shortened(repr(before.get(key)))} there and {shortened(repr(value))} here"
-    for key, value in before.items():
-        if key not in now:
-            return f"{key} is {shortened(repr(value))} there and not given here"
+    for key in (*now, *before):
+        if before.get(key) != now.get(key):
+            given = f"{shortened(repr(now[key]))} here" if key in now else "not given here"
+            return f"{key} is {shortened(repr(before.get(key)))} there and {given}"
     return f"it was drawn with {there[2]}, but this is {here[2]}"
 
 
