@@ -5,7 +5,6 @@ import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from inspect import signature
 from pathlib import Path
 from typing import Any, Literal
 
@@ -17,7 +16,7 @@ from analytic.arrays import Array
 from analytic.laws import ContactLaw, CustomLaw, Hertz, by_name
 from mcgw.formats.named_files import open_npy, read_text
 from mcgw.formats.units import signed
-from mcgw.scene.section import Section
+from mcgw.scene.section import Section, signature_of
 
 OF_YIELD = ("hardness", "poisson")  # which tell beside an elastic law whether contacts yield
 LISTS = ("file", "heights", "radii", "ratios", "resample")  # keys of listed summits
@@ -100,7 +99,7 @@ def _law(section: Section, default: str, **others: Callable[..., Any]) -> Any:
                 section.fail(name, f"give it to the law, {type(law).__name__}, or leave it out")
         return law
     makes = LAWS[section.name] | others
-    known = {word: signature(make).parameters for word, make in makes.items()} if section.values else {}
+    known = {word: signature_of(make).parameters for word, make in makes.items()} if section.values else {}
     for name in section.values:
         laws = [repr(word) for word, names in known.items() if name in names]
         if laws and repr(law) not in laws and name not in OF_YIELD:

@@ -10,7 +10,7 @@ from typing import Any
 
 from mcgw.machine.terminal import one_line
 
-_signature = lru_cache(64)(signature)
+signature_of = lru_cache(64)(signature)
 _MOST_NAMED = 20  # unknown keys of a table: more say nothing new
 
 
@@ -145,7 +145,7 @@ class Section:
 
         They are noted at the key that they name, or at the first that is given; `why` the law needs it.
         """
-        known = _signature(make).parameters
+        known = signature_of(make).parameters
         given = others | {name: value for name, value in self.values.items() if name in known}
         told = {*given, *self.table, *(name for row in self.given for name in (*row.needs, *row.excludes))}
         for name in [x.name for x in known.values() if x.default is Parameter.empty and x.name not in told]:
