@@ -83,8 +83,9 @@ class HeightRule:
         own = radii if isinstance(radii, RandomCurvature) else None
         if not start < top:
             return cls(np.empty(0), np.empty(0), below, None if own is None else np.empty(0))
-        ratios, regular = np.ones(1), np.array(regular_edges(heights, start, top))
-        if own is not None:
+        if own is None:
+            ratios, regular = np.ones(1), np.array(regular_edges(heights, start, top))
+        else:
             curvatures, of_radii = own.rule(h[-1])
             pieces = np.ceil((top - start) / min(SPANS * own.narrowest, WIDEST))
             ratios, regular = MEAN_CURVATURE / curvatures, np.linspace(start, top, int(pieces) + 1)

@@ -197,12 +197,6 @@ class MeasuredHeights(HeightLaw):
         """Lowest and highest of them."""
         return float(self._sorted[0]), float(self._sorted[-1])
 
-    def span(self, s: float) -> float:
-        """Refuse to answer, by a ValueError: there is no density."""
-        raise ValueError(
-            f"measured heights have no density at s = {s:g}; make a HeightTable, or sum them directly"
-        )
-
     def rvs(self, n: int, rng: np.random.Generator) -> Array:
         """Return the heights themselves, in their own order; or draw `n` of them with replacement.
 
@@ -222,9 +216,11 @@ class MeasuredHeights(HeightLaw):
         return np.arange(n)
 
     def pdf(self, s: Array) -> Array:
-        """Refuse to answer: there is no density; see `span`."""
-        self.span(float(np.ravel(s)[0]))
-        raise AssertionError
+        """Refuse to answer, by a ValueError: there is no density."""
+        raise ValueError(
+            f"measured heights have no density at s = {np.ravel(s)[0]:g}; make a HeightTable, or sum them "
+            "directly"
+        )
 
     def cdf(self, s: Array) -> Array:
         """Return the share of lower heights."""
