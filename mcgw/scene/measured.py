@@ -118,12 +118,6 @@ class Fitted:
         """m0, m2 and m4."""
         return SpectralMoments(self.m0, self.m2, self.m4)
 
-    def off(self, surface: Surface) -> float:
-        """Largest ratio, at least 1, of eta, R and sigma of a surface to those from the moments."""
-        m = self.moments
-        pairs = ((surface.eta, m.eta), (surface.radius, m.radius), (surface.sigma, m.sigma))
-        return max(max(a, b) / min(a, b) if min(a, b) > 0 else math.inf for a, b in pairs)
-
     @property
     def gravest(self) -> list[str]:
         """The cautions to display, at most three."""

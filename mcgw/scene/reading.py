@@ -116,7 +116,6 @@ def of_tables(document: Tables, folder: Path = Path(), seed: Seeds | None = None
     surface, heights, radii = _surface_and_summits(of, folder)
     joint = of["joint"].make(Joint) or Joint()
     separations, contact = _contact(of, heights, joint)
-    interaction, fitted = "interaction" in document, "fitted" in document
     left_out: Values = dict.fromkeys(("n_surfaces", "n_asperities"), LeftOut())
     if "seed" not in of["ensemble"].table:
         drawn = None if seed is None else seed()
@@ -130,10 +129,10 @@ def of_tables(document: Tables, folder: Path = Path(), seed: Seeds | None = None
         "heights": heights,
         "summits": radii,
         "contact": contact,
-        "interaction": of["interaction"].make(analytic.Interaction) if interaction else None,
+        "interaction": of["interaction"].make(analytic.Interaction) if "interaction" in document else None,
         "joint": joint,
         "ensemble": of["ensemble"].make(Sampling, **left_out),
-        "fitted": of["fitted"].make(Fitted) if fitted else None,
+        "fitted": of["fitted"].make(Fitted) if "fitted" in document else None,
     }
     if problems := [line for section in of.values() for line in section.problems]:
         raise SceneError(problems)

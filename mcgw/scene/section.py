@@ -112,8 +112,8 @@ class Section:
         self.path = f"{name}." if name else ""
         self.values: dict[str, Any] = {}
         self.problems: list[str] = []
-        self.given = [row for row in self.rows.values() if row.name in table]
-        for row in self.given:
+        self.present = [row for row in self.rows.values() if row.name in table]
+        for row in self.present:
             try:
                 self.values[row.name] = row.kind.read(self.path + row.name, table[row.name])
             except SceneError as error:
@@ -147,7 +147,7 @@ class Section:
         """
         known = signature_of(make).parameters
         given = others | {name: value for name, value in self.values.items() if name in known}
-        told = {*given, *self.table, *(name for row in self.given for name in (*row.needs, *row.excludes))}
+        told = {*given, *self.table, *(name for row in self.present for name in (*row.needs, *row.excludes))}
         for name in [x.name for x in known.values() if x.default is Parameter.empty and x.name not in told]:
             if name in self.rows:
                 kind = self.rows[name].kind

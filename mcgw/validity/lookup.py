@@ -152,7 +152,9 @@ def _not_gaussian(fitted: Any, surface: Surface) -> str | None:
     elif fitted.agreement > _APART:
         why = f"moments and counts differ by a factor of {fitted.agreement:.3g}"
     else:
-        off = fitted.off(surface)
+        told = fitted.moments
+        pairs = ((surface.eta, told.eta), (surface.radius, told.radius), (surface.sigma, told.sigma))
+        off = max(max(pair) / min(pair) if min(pair) > 0 else math.inf for pair in pairs)
         differs = f"eta, R or sigma differs from that of the map by a factor of {off:.3g}"
         return differs if off > _APART else None
     return f"the map is not isotropic and Gaussian ({why})"
