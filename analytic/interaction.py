@@ -107,8 +107,22 @@ class Interaction:
         """Return what the half-space adds to the inverse of a sum over spots, over its unit; 0 to most sums.
 
         To that of a stiffness the compliance; to that of a conductance ``rho E_b/2`` of it, by which both
-        bodies constrict the flux as a whole; rho counts where the conductance is not given times it. For a
-        homogeneous body then ``C rho = 2 K/E*``. Source: J. R. Barber, Proc. R. Soc. Lond. A 459 (2003) 53.
+        bodies constrict the flux as a whole. For a homogeneous body then ``C rho = 2 K/E*``.
+
+        Parameters
+        ----------
+        quantity : str
+            Its name.
+        surface : Surface
+            Its `E_star` is that of the half-space unless `bulk_modulus` is given.
+        n_asperities : float
+            On the surface.
+        resistivity : float, optional
+            rho of both bodies, for a conductance that is not given times it.
+
+        Notes
+        -----
+        Source: J. R. Barber, Proc. R. Soc. Lond. A 459 (2003) 53: ``C rho = 2 K/E*`` of rough bodies.
         """
         q = quantity_of(quantity)
         name = q.unloading or q.of or q.name
@@ -127,8 +141,18 @@ class Interaction:
     def bodies(self, surface: Surface, resistivity: float) -> float:
         """Return how the bodies as a whole resist the flux through a unit area of the joint, m^2 K/W.
 
-        ``0.4732 rho sqrt(A_n)``, half the mean sinking of a square times rho, the resistivity of both bodies
-        in m K/W; 0 from the mean plane, far inside a larger contact.
+        Parameters
+        ----------
+        surface : Surface
+            Whose nominal area the flux is constricted to.
+        resistivity : float
+            rho of both bodies, m K/W.
+
+        Returns
+        -------
+        float
+            ``0.4732 rho sqrt(A_n)``, half the mean sinking of a square times rho; 0 from the mean plane, far
+            inside a larger contact.
         """
         return BOWL / 2 * resistivity * math.sqrt(surface.nominal_area) if self.reference == "body" else 0.0
 

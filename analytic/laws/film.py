@@ -217,11 +217,29 @@ def _images(ratio: float) -> tuple[tuple[int, float], ...]:
 
 
 def crowding_factor(area_fraction: ArrayLike) -> Array:
-    """Factor ``psi = (1 - sqrt(A/A_n))^1.5`` by which the conductance of a surface is to be divided.
+    """Return ``psi = (1 - sqrt(A/A_n))^1.5``, by which the conductance of a surface is to be divided.
 
     It couples the spots through the area of their own surface: for sums over a surface, never for one
-    contact. Source: M. G. Cooper, B. B. Mikic, M. M. Yovanovich, Int. J. Heat Mass Transf. 12 (1969) 279.
-    An area fraction that is not from 0 to below 1 is a ValueError.
+    contact.
+
+    Parameters
+    ----------
+    area_fraction : array_like
+        Real over nominal area of each surface, from 0 to below 1.
+
+    Returns
+    -------
+    ndarray
+        In its shape.
+
+    Raises
+    ------
+    ValueError
+        If an area fraction is out of range.
+
+    Notes
+    -----
+    Source: M. G. Cooper, B. B. Mikic, M. M. Yovanovich, Int. J. Heat Mass Transf. 12 (1969) 279.
     """
     fraction = np.asarray(area_fraction, dtype=np.float64)
     if not np.all((fraction >= 0) & (fraction < 1)):

@@ -123,9 +123,17 @@ class ContactLaw:
         return value
 
     def with_radii(self, ratios: Array) -> Self:
-        """Return it in the units of summits whose radii are these multiples c of the surface's, one a summit.
+        """Return it in the units of summits whose radii are these multiples of the surface's.
 
-        Radii of contact over sqrt(c R sigma), loads over ``(4/3) E* sqrt(c R) sigma^(3/2)``.
+        Parameters
+        ----------
+        ratios : ndarray
+            One a summit: formulas then take arrays of this shape.
+
+        Returns
+        -------
+        ContactLaw
+            Radii of contact over sqrt(c R sigma), loads over ``(4/3) E* sqrt(c R) sigma^(3/2)``.
         """
         if not self.of_radius:
             return self
