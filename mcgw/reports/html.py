@@ -157,7 +157,8 @@ def pressure_panels(solved: Sequence[Solution]) -> Iterator[tuple[str, Panel]]:
     h = np.linspace(max(ends), min(ends), 49)  # points of a curve
     sums = {name: np.asarray(alone.mean(name, h)) for name in quantities_at(scene)}
     line = answers_at(scene, {"separation": h, **sums})
-    pressure, x = np.array([each.amount for each in solved]) / area / 1e6, sums["load"] / area / 1e6
+    pressure = np.array([each.amount for each in solved]) / area / 1e6
+    x = np.clip(sums["load"] / area / 1e6, pressure.min(), pressure.max())  # one is one in all digits
     span = f"from {x[0]:.3g} to {x[-1]:.3g} MPa"
     for name, factor, title, label in _asked(scene):
         mean, std = factor * np.array([(each.value[name], each.std[name]) for each in solved]).T
