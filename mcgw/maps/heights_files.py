@@ -12,12 +12,8 @@ from mcgw.maps.map_files import read_foreign, read_h5, read_npy
 from mcgw.maps.text_file import read_text
 from mcgw.maps.topography import ForeignError, Given, Profile, Raw, Topography, metres_in
 
-_TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv", ".prf", ".xy", ".xyz")
-READERS: dict[str, Callable[[Path, Given], Raw]] = {
-    ".npy": read_npy,
-    ".h5": read_h5,
-    **dict.fromkeys(_TEXT, read_text),
-}
+READERS: dict[str, Callable[[Path, Given], Raw]] = {".npy": read_npy, ".h5": read_h5}
+READERS |= dict.fromkeys((".txt", ".csv", ".asc", ".dat", ".tsv", ".prf", ".xy", ".xyz"), read_text)
 _SENTINELS = (-9999.0, -99999.0, -32768.0, 32767.0, 1e30, -1e30, 1e10, -1e10, 3.4028235e38, -3.4028235e38)
 _EVEN = 0.1  # share of a step that places may be off an even grid
 _EQUAL = 1e-6  # relative, of a height and the number that stands for a missing one; beyond 1e30 a hundredth

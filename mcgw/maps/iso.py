@@ -36,11 +36,7 @@ NUMBERS = {
     "RSm": Row("m", 2 * math.pi, (0.5, -0.5, 0), "2 pi sqrt(m0/m2), between upward crossings: Rice 1945"),
 }
 _CORRELATED = ("Sal", "short", "autocorrelation")
-_GIVES = {
-    "m0": "Sq or Rq (heights)",
-    "m2": "Sdq or Rdq (slopes), or RSm",
-    "m4": "Spc, Spd or Rpd (peaks)",
-}
+_GIVES = {"m0": "Sq or Rq (heights)", "m2": "Sdq or Rdq (slopes), or RSm", "m4": "Spc, Spd or Rpd (peaks)"}
 # Of 15 drawn maps (hurst 0.8, 250 to 2500 summits, 10 pixels to the shortest wave), Wolf pruning at 5 % of
 # Sz over all summits: Spd 0.70, 0.50, 0.31, 0.19, 0.07 and Spc 1.13, 1.20, 1.24, 1.29, 1.31 times, for
 # alpha 2, 3, 5, 10 and 30.

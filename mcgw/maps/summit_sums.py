@@ -263,11 +263,10 @@ def coarse_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
     pixel = (2 * topography.pixel[0], 2 * topography.pixel[1])
     rows, columns = (n - n % 2 for n in topography.heights.shape)  # all four of one size
     found = []
-    for j in (0, 1):
-        for i in (0, 1):
-            every = (slice(j, rows, 2), slice(i, columns, 2))
-            half = Topography(topography.heights[every], pixel, topography.periodic)
-            found.append(summit_sums_of(half, across=across, seen=None if seen is None else seen[every]))
+    for j, i in np.ndindex(2, 2):
+        every = (slice(j, rows, 2), slice(i, columns, 2))
+        half = Topography(topography.heights[every], pixel, topography.periodic)
+        found.append(summit_sums_of(half, across=across, seen=None if seen is None else seen[every]))
     return Summits.together(found, np.sum([f.sums for f in found], axis=0))
 
 

@@ -39,11 +39,7 @@ class Pair(Spectral):
 
 
 def combine(
-    a: Described,
-    b: Described,
-    *,
-    nominal_area: float | str | None = None,
-    E_star: float | str | None = None,
+    a: Described, b: Described, *, nominal_area: float | str | None = None, E_star: float | str | None = None
 ) -> Pair:
     """Make the one rough surface, on a rigid plane, that stands for two rough bodies in contact.
 

@@ -38,18 +38,15 @@ class Spread(NamedTuple):
     up: float  # and above
 
 
-_NO_WAVES = Spread(0.0, 0.0, 0.0)
-
-
-def uncertain(value: float, error: float, waves: Spread = _NO_WAVES) -> Uncertain:
-    """Put together an error seen between sub-areas, two of which hold 95 %, and that of few long waves.
+def uncertain(value: float, error: float, waves: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Uncertain:
+    """Put together an error seen between sub-areas, two of which hold 95 %, and a `Spread` of few long waves.
 
     The larger one counts: sub-areas see the short waves twice and the long ones not at all.
     """
-    relative = error / value
-    down, up = max(2 * relative, waves.down), max(2 * relative, waves.up)
+    relative, (least, down, up) = error / value, waves
+    down, up = max(2 * relative, down), max(2 * relative, up)
     high = value * math.exp(up) if up < 700 else math.inf  # where an arm has no end
-    return Uncertain(value, value * max(relative, waves.error), value * math.exp(-down), high)
+    return Uncertain(value, value * max(relative, least), value * math.exp(-down), high)
 
 
 @dataclass(frozen=True, slots=True)
