@@ -69,10 +69,9 @@ def read_npy(path: Path, given: Given) -> Raw:
 
 def _write_h5(topography: Topography, path: Path, field: Asperities | None, scene: str) -> None:
     """Write datasets ``height`` (y, x) and ``asperities/x``, ``y``, ``z``, all in m, and the scene."""
+    pixel, periodic = topography.pixel, topography.periodic
     with h5py.File(path, "w", locking=False) as file:
-        file.attrs.update(
-            filetype=FILETYPE, format=[1, 0], pixel=topography.pixel, periodic=topography.periodic
-        )
+        file.attrs.update(filetype=FILETYPE, format=[1, 0], pixel=pixel, periodic=periodic)
         data = file.create_dataset("height", data=topography.heights, compression="gzip", compression_opts=1)
         data.attrs.update(units="m", long_name="height above the mean of the summits", axes=["y", "x"])
         if field is not None:
@@ -124,8 +123,7 @@ def _write_sdf(topography: Topography, path: Path) -> None:
     head = (b"bISO-1.0", b"mcgw".ljust(10), stamp, stamp, columns, rows, *scales, 0, 7, 0)  # 7: a double
     with open(path, "wb") as file:
         file.write(struct.pack("<8s10s12s12sHHddddBBB", *head))
-        for row in topography.heights:
-            file.write(row.astype("<f8").tobytes())
+        np.asarray(topography.heights, "<f8").tofile(file)
 
 
 def files_of_map(path: Path) -> list[Path]:
