@@ -81,10 +81,10 @@ def combine(
     """
     pair = _body(a).beside(_body(b))
     if nominal_area is None:
-        areas = {x.surface.nominal_area for x in (a, b) if isinstance(x, Scene | Spectral)}
-        if len(areas) != 1 or not all(isinstance(x, Scene | Spectral) for x in (a, b)):
+        areas = [x.surface.nominal_area for x in (a, b) if isinstance(x, Scene | Spectral)]
+        if len(areas) < 2 or areas[0] != areas[1]:
             raise SceneError(['nominal_area: is not the same known one of both; give it, such as "1 mm^2"'])
-        (nominal_area,) = areas
+        nominal_area = areas[0]
     E_star = pair.E_star if E_star is None else E_star
     if E_star is None:
         raise SceneError(['E_star: is not known of both; give that of the pair, such as "100 GPa"'])
@@ -101,10 +101,8 @@ def _body(given: Described) -> RoughBody:
             raise SceneError([f"combine: the scene {error}"]) from None
     if isinstance(given, Spectral):
         return RoughBody(given.moments, given.surface.E_star)
-    if isinstance(given, Fit | ProfileFit):
-        return RoughBody(given.moments)
-    if isinstance(given, SpectralMoments):
-        return RoughBody(given)
+    if isinstance(given, Fit | ProfileFit | SpectralMoments):
+        return RoughBody(given if isinstance(given, SpectralMoments) else given.moments)
     raise TypeError(
         "combine: give scenes, surfaces from mcgw.SpectralSurface or mcgw.surface_from, fits, or moments, "
         f"not {type(given).__name__}"
