@@ -10,8 +10,7 @@ from scipy.special import erfc
 
 from analytic.arrays import Array, Ints
 
-# Ewald's two sums, with so narrow a split that only the nearest image counts in the first: erfc(6) is 2e-17.
-_FEWEST = 46  # points along the shorter side, at which the second sum has no more than the grid's waves
+_FEWEST = 46  # points along the shorter side, at which Ewald's second sum has no more than the grid's waves
 
 
 @dataclass(frozen=True)
@@ -44,6 +43,7 @@ class Grid:
         dx, dy = self.pixel
         r = np.hypot(self.size[0] * fft.fftfreq(columns), self.size[1] * fft.fftfreq(rows)[:, None])
         r[0, 0] = 1.0
+        # so narrow a split of Ewald's sums that only the nearest image counts in the first: erfc(6) is 2e-17
         split = 12.0 / min(self.size)
         near = erfc(split * r) / r
         near[0, 0] = -2 * split / math.sqrt(math.pi)

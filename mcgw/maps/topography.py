@@ -18,8 +18,8 @@ MOST_PIXELS = 2**28  # 16384 x 16384: 2 GiB as float64
 SMALLEST, LARGEST = 1e-150, 1e150  # of what is squared, m: sums of squares and a dozen times that, too
 _FINEST = 1e-30  # m, of a pixel, whose eighth power still counts
 XYZ = 3
-STEEPEST = 10.0  # 84 degrees: no instrument that gives a height map sees such slopes all over it
 LEAST_POINTS = 8  # of a profile
+STEEPEST = 10.0  # 84 degrees: no instrument that gives a height map sees such slopes all over it
 FLATTEST = 1e-6  # and no surface is so flat from one pixel to the next
 
 
