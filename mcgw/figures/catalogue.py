@@ -124,12 +124,12 @@ def fluctuations(f: Compared) -> FigureData:
     """Show the standard deviation over the mean: of a sweep from a hundred asperities to a million."""
     if not f.swept:
         panel = replace(spread_panel("", f.drawn(SCENE, f.h), f.line, _SPREADING), level=1.0)
-        size = f"{f.scene.surface.nominal_area * 1e6:g} mm²"
-        return FigureData(f"Scatter of surfaces of {size}", f.caption(), (panel,))
+        area = f.scene.surface.nominal_area * 1e6
+        return FigureData(f"Scatter of surfaces of {area:g} mm²", f.caption(), (panel,))
     scene = f.scene.replace(keep="sums", separations=np.linspace(0, 4, 9), quantities=_SPREADING)
     scenes = {n: scene.replace(n_asperities=n) for n in (100, 1000, 10_000, 100_000, 1_000_000)}
-    sizes = {n: min(2000, 400_000_000 // n) for n in (100, 10_000, 1_000_000)}
-    drawn = {n: simulate(scenes[n], n_surfaces=surfaces) for n, surfaces in sizes.items()}
+    sizes = (100, 10_000, 1_000_000)
+    drawn = {n: simulate(scenes[n], n_surfaces=min(2000, 400_000_000 // n)) for n in sizes}
     line, panels = np.linspace(0, 4, 41), []
     for key, name in zip("abc", scene.quantities, strict=True):
         labelled = ((f"N = {power_of_ten(n)}", one, drawn.get(n)) for n, one in scenes.items())

@@ -155,8 +155,7 @@ def _beside(scene: Scene) -> tuple[Scene, dict[str, Scene], Array]:
 def _ratio(above: Sequence[Array], below: Sequence[Array]) -> Estimate:
     """Take a product of means over the same surfaces over another, with its error by the delta method.
 
-    Of sums of each surface, shape (surfaces, ...). An error of the last digits alone is 0; nan where there is
-    nothing.
+    Sums are of shape (surfaces, ...). An error of the last digits alone is 0; it is nan where nothing is.
     """
     signed = [*((1, x) for x in above), *((-1, x) for x in below)]
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -208,11 +207,10 @@ class Modulus:
 
     def drawn(self, f: Compared, key: Key, h: Array) -> Estimate:
         """Over the contacts of the listed surfaces."""
-        modulus, power = f.of(key).modulus, POWERS[self.weight]
         above, below = np.zeros((2, len(f.listed), len(h)))
         for i, s in enumerate(f.listed):
-            e, overlap = modulus(s), s - h[:, None]
-            weights = np.where(overlap > 0, np.abs(overlap) ** power, 0.0)
+            e, overlap = f.of(key).modulus(s), s - h[:, None]
+            weights = np.where(overlap > 0, np.abs(overlap) ** POWERS[self.weight], 0.0)
             weights *= e if self.weight == "load" else 1.0
             above[i], below[i] = weights @ e, weights.sum(axis=1)
         return _ratio([above], [below])

@@ -88,8 +88,7 @@ def figure_table(figure: FigureData) -> Table:
 def draw(data: FigureData) -> Figure:
     """Draw the panels of a figure beside and below each other, under one legend.
 
-    Under a panel with Monte-Carlo points are their distances from theory in standard errors: five decades,
-    or a scale of ten to one, hide what matters.
+    Under a panel with points stand their residuals, which five decades, or a scale of ten to one, would hide.
     """
     narrow: list[Any] = [k for k, panel in enumerate(data.panels) if not panel.wide]
     columns = 2 if len(narrow) == 4 else min(len(narrow), 3)  # more are too small to read on a page
@@ -104,11 +103,10 @@ def draw(data: FigureData) -> Figure:
         part: Any = figure.subfigures()  # its legend stands below the title of the figure
         axes = part.subplot_mosaic(places, height_ratios=[_TALL, _RESIDUAL] * len(rows))
         for k, panel in enumerate(data.panels):
-            if k in checked:
-                axes[f"below {k}"].sharex(axes[k])  # before it has a scale, which is then that of both
+            if below := axes.get(f"below {k}"):
+                below.sharex(axes[k])  # before it has a scale, which is then that of both
             draw_panel(axes[k], panel)
-            if k in checked:
-                below = axes[f"below {k}"]
+            if below:
                 _draw_residuals(below, panel, labelled=any(row[0] == k for row in rows))
                 axes[k].set_xlabel("")
                 axes[k].tick_params(labelbottom=False)
@@ -131,8 +129,9 @@ def _wrapped(text: str, width: int) -> str:
 
 
 def _known(panel: Panel) -> list[tuple[dict[str, Any], Points]]:
-    """Look of points and these, series by series."""
-    return [(_marks(s, k), s.points) for k, s in enumerate(panel.series) if s.points is not None]
+    """Points, series by series, and their look; beside a single theory they have another colour than it."""
+    looks = (_MARKS if s.label == _THEORY else look(s.label, k) for k, s in enumerate(panel.series))
+    return [(found, s.points) for found, s in zip(looks, panel.series, strict=True) if s.points is not None]
 
 
 def draw_panel(axis: Any, panel: Panel) -> None:
@@ -167,11 +166,6 @@ def keys(axes: Sequence[Any]) -> dict[str, Any]:
     return found
 
 
-def _marks(series: Series, k: int) -> dict[str, Any]:
-    """Look of points: where a single theory is beside them, it has another colour than they have."""
-    return _MARKS if series.label == _THEORY else look(series.label, k)
-
-
 def _draw_series(axis: Any, series: Series, k: int, logarithmic: bool) -> None:
     found, points = look(series.label, k), series.points
     marker = {"marker": found["marker"]}
@@ -183,7 +177,7 @@ def _draw_series(axis: Any, series: Series, k: int, logarithmic: bool) -> None:
         axis.plot([], [], label=series.label, **marker, mfc="white", **line)
     if points is None:
         return
-    found, (low, high) = _marks(series, k), np.abs(np.array(points.interval) - points.mean)
+    found, (low, high) = _MARKS if alone else found, np.abs(np.array(points.interval) - points.mean)
     if logarithmic:  # an interval that reaches zero has no end on such an axis
         low = np.minimum(low, 0.95 * points.mean)
     shown = (points.mean > 0) if logarithmic else np.isfinite(points.mean)

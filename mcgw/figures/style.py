@@ -124,8 +124,7 @@ def look(label: str, place: int = 0) -> dict[str, Any]:
 
 def line(label: str, place: int = 0) -> dict[str, Any]:
     """Label, colour and dash of a line: ``ax.plot(x, y, **line("γ = 0.5"))``."""
-    found = look(label, place)
-    return {"label": label, "color": found["color"], "linestyle": found["linestyle"]}
+    return {"label": label} | {key: x for key, x in look(label, place).items() if key != "marker"}
 
 
 def step(label: str, k: int, n: int) -> dict[str, Any]:

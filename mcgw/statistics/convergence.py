@@ -170,15 +170,14 @@ def _contacts(scene: Scene, sums: Sums) -> list[Check]:
 def _repeats(scene: Scene, sums: Sums) -> list[Check]:
     """Surfaces that give the same number to the last bit, which independent ones never do."""
     name = next((name for name in scene.quantities if not quantity_of(name).counts), None)
-    lowest = int(np.argmin(scene.separations))
     if name is None or scene.touching < 100:
         return []
-    values = sums[name][:, lowest]
+    values = sums[name][:, int(np.argmin(scene.separations))]
     again = len(values) - len(np.unique(values))
     # Two Gaussian numbers share their last bit with probability spacing/(2 sqrt(pi) std); their last ten
     # times as often, which leaves room for rounding.
-    spread = max(float(values.std()), float(np.spacing(np.abs(values).max())))
-    expected = 10 * float(np.spacing(np.abs(values).max())) / spread * len(values) ** 2 / 2
+    spacing = float(np.spacing(np.abs(values).max()))
+    expected = 10 * spacing / max(float(values.std()), spacing) * len(values) ** 2 / 2
     return [Check("repeated surfaces", f"{again} of {len(values)}", float(poisson.sf(again - 1, expected)))]
 
 

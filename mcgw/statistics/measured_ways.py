@@ -38,19 +38,15 @@ Errors = dict[str, float]
 
 @dataclass(frozen=True)
 class Point:
-    """One way to an answer from so many surfaces, 0 where none is drawn.
-
-    The root mean square of its error over the repeats with its own standard error, its mean error if that
-    cannot be chance (else 0), its median CPU time in seconds, and the number of repeats.
-    """
+    """One way to an answer from so many surfaces, 0 where none is drawn."""
 
     way: str
     want: str
     n_surfaces: int
-    rms: float
-    stderr: float
-    bias: float
-    seconds: float
+    rms: float  # root mean square of its error over the repeats
+    stderr: float  # standard error of this
+    bias: float  # its mean error if that cannot be chance, else 0
+    seconds: float  # median CPU time
     repeats: int
 
 

@@ -138,11 +138,10 @@ def tested(ensemble: Ensemble, most: int) -> Tested:
     p = float(chdtrc(degrees, chi_square)) if degrees else 1.0
     seen = f"chi-square {chi_square:.1f} for {degrees} degrees of freedom"
     seen = seen if degrees else "no mean is close enough to Gaussian for a test"
+    found = Check("means", seen, p, chi_square, degrees)
     shape = len(scene.quantities), len(h)
-    return Tested(
-        scene.quantities, h, means.reshape(shape), (exact * scale).reshape(shape), residual.reshape(shape),
-        counts.reshape(shape), Check("means", seen, p, chi_square, degrees),
-    )  # fmt: skip
+    means, exact, residual = (x.reshape(shape) for x in (means, exact * scale, residual))
+    return Tested(scene.quantities, h, means, exact, residual, counts.reshape(shape), found)
 
 
 def _gaussian(parts: Fluctuations, asperities: float) -> Marks:

@@ -174,6 +174,8 @@ def test_what_is_drawn_is_what_there_is(ensemble, results):
         results["study"].plot(want="median")
     with pytest.raises(KeyError, match="torque"):
         ensemble.plot(quantity="torque")
+    pulled = mcgw.simulate(ensemble.scene, law=analytic.JohnsonKendallRoberts(pull_off=1.0), n_surfaces=9)
+    assert pulled.plot(quantity="load").get_yscale() == "linear"
 
 
 def test_one_load_by_four_names(scene):
