@@ -38,7 +38,7 @@ LAWS: dict[str, dict[str, Any]] = {  # by their words in the tables of a scene
     },
     "contact.law": {**by_name, "custom": CustomLaw},
 }
-_LAW_OF_HEIGHTS = ("support", "breaks", "span", "log_ratio", "pdf")
+_LAW_OF_HEIGHTS = ("support", "breaks", "span", "log_ratio", "log_pdf")
 _MOST_BYTES, _MOST_OF_MODULI = 2**28, 2**24
 _SUMMITS: list[dict[str, tuple[str, float]]] = [{"height": ("m", 1.0)}, {"radius": ("m", 1.0)}]
 _NAMED = re.compile(r"\s*(\w+)\s*(?:[(\[/ ]\s*([^()\[\]]*?)\s*[)\]]?)?\s*")  # z, z (um), z [um], z / um, z um
