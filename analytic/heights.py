@@ -80,16 +80,20 @@ class HeightLaw(Protocol):
     def sf(self, s: Array) -> Array:
         """Return the probability of a height above `s`, to full relative accuracy."""
 
+    def between(self, below: Array, above: Array) -> Array:
+        """Return the heights with these probabilities on either side."""
+        return height_between(self, below, above)
+
     def ppf(self, p: Array, below: float = np.inf) -> Array:
         """Return the height at the share `p` of the heights below one, or of all."""
         p, lower, higher = np.asarray(p), self.cdf(np.array(below)), self.sf(np.array(below))
-        found = height_between(self, p * lower, higher + (1 - p) * lower)
+        found = self.between(p * lower, higher + (1 - p) * lower)
         return np.minimum(found, below) if lower > 0 else np.full(p.shape, max(below, self.support[0]))
 
     def isf(self, p: Array, above: float = -np.inf) -> Array:
         """Return the height at the share `p` of the heights above one, or of all, counted from the top."""
         p, lower, higher = np.asarray(p), self.cdf(np.array(above)), self.sf(np.array(above))
-        found = height_between(self, lower + (1 - p) * higher, p * higher)
+        found = self.between(lower + (1 - p) * higher, p * higher)
         return np.maximum(found, above) if higher > 0 else np.full(p.shape, min(above, self.support[1]))
 
 

@@ -2,7 +2,8 @@
 
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from time import thread_time
@@ -16,6 +17,7 @@ from analytic.resolution import resolved_breaks
 
 _SLOW = 5e-3  # seconds for one of thousands of densities: some are integrals of integrals
 _NOISE = 2.0**-30  # of a density that is the exponential of large terms, as of gamma(1e4)
+_SAME = 1e-12  # share that is given back but for rounding
 _RARE, _NEXT = 1e-9, 1e-8  # share beyond rare heights; how near to an end is as good as there
 _NO_RARER = 1e-300  # share beyond which a law has no heights, if its density ends there:
 _INSIDE, _OUTSIDE = 1e-2, 1e-6  # it is positive so far inside, in standard deviations, and 0 so far outside
@@ -110,8 +112,7 @@ class ScipyHeights(HeightLaw):
     def _end(self, inverse: Callable[[float], Any], outward: float) -> float:
         """Where heights end of which SciPy says that they do not, as Pearson's of type III; or infinity."""
         pdf = self.distribution.pdf
-        with np.errstate(all="ignore"), warnings.catch_warnings():  # Boost's of what it does not find
-            warnings.simplefilter("ignore", RuntimeWarning)
+        with _quiet():
             end = float(inverse(_NO_RARER))
             ends = math.isfinite(end) and pdf(end + _OUTSIDE * outward) == 0 < pdf(end - _INSIDE * outward)
         return end if ends else math.copysign(math.inf, outward)
@@ -153,6 +154,32 @@ class ScipyHeights(HeightLaw):
     def sf(self, s: Array) -> Array:
         """Return its ``sf``."""
         return np.asarray(self.distribution.sf(self._x(s)))
+
+    def between(self, below: Array, above: Array) -> Array:
+        """Return its ``ppf`` or ``isf`` of the smaller share, where its tail there has that; else as any law.
+
+        SciPy loses heights in many tails: beta heights at 1e-280, inverse Gaussian ones at 1e-17.
+        """
+        found, law, (mean, std) = np.empty(below.shape), self.distribution, self._mean_std
+        lost = np.ones(below.shape, dtype=bool)
+        low = below < above
+        with _quiet():
+            for side, share, inverse, tail in (
+                (low, below, law.ppf, self.cdf),
+                (~low, above, law.isf, self.sf),
+            ):
+                found[side] = (inverse(share[side]) - mean) / std
+                lost[side] = ~(np.abs(np.log(tail(found[side]) / share[side])) < _SAME)
+        found[lost] = super().between(below[lost], above[lost])
+        return found
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Without warnings of NumPy, and Boost's of what it does not find."""
+    with np.errstate(all="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        yield
 
 
 def _without_place(distribution: Any) -> Any:
