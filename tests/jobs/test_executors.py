@@ -10,15 +10,7 @@ from pathlib import Path
 
 import pytest
 from oracles.begun_runs import digest
-from oracles.inside import (
-    Jobs,
-    Signals,
-    Span,
-    Values,
-    dask_executor,
-    drive,
-    heed_signals,
-)
+from oracles.inside import Jobs, Signals, Span, Values, dask_executor, drive, heed_signals
 from oracles.lost_workers import deadly, deadly_once
 
 import mcgw
@@ -112,8 +104,8 @@ def driven(executor, done, task=abs):
         (Now(lost={8: 1, 24: 1}), None, [0, 8, 16, 24, 32, 40]),
         (Now(lost={8: 2, 24: 2}), r"^surfaces 24 \.\.\. 31 were lost twice by the executor \(KeyError: ",
          [0, 16, 32, 40]),
-        (Now(takes=3), r"^the executor takes no more work \(BrokenExecutor: no worker\); finished", []),
-    ],
+        (Now(takes=3), r"^the executor takes no more work \(BrokenExecutor: no worker\); finished", [])
+    ]
 )  # fmt: skip
 def test_a_block_that_is_lost_is_submitted_once_more_when_the_others_are_done(executor, told, kept):
     done = []

@@ -4,13 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from oracles.inside import (
-    Preparation,
-    filled,
-    lowpass,
-    prepared,
-    smooth,
-)
+from oracles.inside import Preparation, filled, lowpass, prepared, smooth
 from scipy.ndimage import minimum_filter
 
 import mcgw
@@ -151,7 +145,7 @@ def test_what_is_left_of_a_map_does_not_repeat_itself():
     whole, edge = rough(), rough()
     edge[0] = np.nan
     for z, steps, periodic in (
-        (whole, {}, True), (edge, {}, False), (whole, {"trim": 1}, False), (whole, {"form": "plane"}, False),
+        (whole, {}, True), (edge, {}, False), (whole, {"trim": 1}, False), (whole, {"form": "plane"}, False)
     ):  # fmt: skip
         asked = Preparation(None, **{"form": "none", **steps})
         assert prepared(Topography(z, PIXEL, periodic=True), asked).used.periodic == periodic

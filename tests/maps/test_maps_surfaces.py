@@ -13,14 +13,7 @@ import analytic
 import mcgw
 from mcgw import scene_text
 from mcgw.cli import main
-from mcgw.maps import (
-    Asperities,
-    Spectrum,
-    asperities_of,
-    gaussian_map,
-    moments_on_grid,
-    spectrum_from,
-)
+from mcgw.maps import Asperities, Spectrum, asperities_of, gaussian_map, moments_on_grid, spectrum_from
 
 
 def random_field(number, size, radius, sigma, seed=1):
@@ -38,7 +31,7 @@ def offsets(a, b, length, periodic):
 @settings(max_examples=30, deadline=None)
 @given(
     number=st.integers(1, 120), width=st.floats(0.2, 5.0), radius=st.floats(0.02, 3.0),
-    sigma=st.floats(0.0, 0.5), periodic=st.booleans(), seed=st.integers(0, 2**32),
+    sigma=st.floats(0.0, 0.5), periodic=st.booleans(), seed=st.integers(0, 2**32)
 )  # fmt: skip
 def test_envelope_and_hidden_summits_against_all_pairs(number, width, radius, sigma, periodic, seed):
     field = random_field(number, (width, 1.0), radius, sigma, seed)

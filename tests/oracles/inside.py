@@ -67,7 +67,7 @@ MODULES = {
     "mcgw.statistics.ways": "advise of_one sampled_ways surfaces_for WANTS wants_of Way",
     "mcgw.statistics.verdict": "Check FALSE_ALARM verdict",
     "mcgw.store.ensembles": "LARGE open_results read_attributes verify",
-    "mcgw.store.h5_reading": "attributes_in checksum_of MOST_TEXT read_tables table_names",
+    "mcgw.store.h5_reading": "attributes_in checksum_of MOST_TEXT read_rows read_tables table_names",
     "mcgw.store.h5_writing": "CHUNK_ROWS",
     "mcgw.store.identity": "another",
     "mcgw.store.lock": "LOCK_FILES locked LockedError parts_of PATIENCE",

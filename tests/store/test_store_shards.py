@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import h5py
 import numpy as np
 import pytest
-from oracles.inside import Plan, Span, commit_shard, read_tables
+from oracles.inside import Plan, Span, commit_shard, read_rows, read_tables
 
 import mcgw
 from mcgw.errors import StoreError
@@ -107,3 +107,12 @@ def test_what_does_not_fit_when_a_file_is_closed_is_an_error(lacking, make_scene
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert [path.name for path in tmp_path.iterdir()] == ["whole.h5"]
+
+
+def test_rows_that_lie_in_several_files_are_read_in_their_order(tmp_path):
+    rows, files = np.arange(9), [(tmp_path / f"{k}.h5", 3) for k in range(3)]
+    for (path, _), some in zip(files, rows.reshape(3, 3), strict=True):
+        with h5py.File(path, "w") as file:
+            file["load"] = some
+    for part in (slice(None), slice(2, 4), slice(3, 6), slice(4, 9)):
+        np.testing.assert_array_equal(read_rows(files, "load", part), rows[part])
