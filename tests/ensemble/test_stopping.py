@@ -110,8 +110,9 @@ def test_a_limit_too_low_is_said_in_one_line(make_scene, tmp_path, capsys):
     scene = make_scene(rel_err=0.01, n_surfaces=200, separations=(0.0, 3.0), n_asperities=300)
     assert forecast(scene).surfaces == 200
     assert ("load", 3.0) in forecast(scene).out_of_reach
-    with pytest.warns(UserWarning, match="n_surfaces allows"):
+    with pytest.warns(UserWarning, match="n_surfaces allows") as told:
         assert mcgw.simulate(scene).n_surfaces == 200
+    assert told[0].filename == __file__  # where the user asked
     (tmp_path / "scene.toml").write_text(mcgw.scene_text(scene))
     assert main(["run", str(tmp_path / "scene.toml"), "-o", str(tmp_path / "a.h5")]) == 0
     assert capsys.readouterr().out.count("n_surfaces allows") == 1
