@@ -269,9 +269,8 @@ def normal_scores(
     places, step, moved = [start + other * spread / 7], wide * spread / 3, 1.0
     while score(places[-1]) < SCORES:  # far, where tails are heavy
         places.append(places[-1] + step * 1.25 ** len(places))
-    while (
-        score(places[0]) > -SCORES and moved > 1e-9 and places[0] > LOWEST
-    ):  # else the rest have no asperity
+    # if shares move no more, the surfaces that are left have no asperity
+    while score(places[0]) > -SCORES and moved > 1e-9 and places[0] > LOWEST:
         places.insert(0, max(places[0] - step, LOWEST))
         moved = score(places[1]) - score(places[0])
     k = 1

@@ -96,9 +96,12 @@ class Interaction:
             raise ValueError(f'reference = {self.reference!r}: give "body" or "mean-plane"')
         check_positive("Pa", bulk_modulus=self.bulk_modulus)
 
+    def _modulus(self, surface: Surface) -> float:
+        return self.bulk_modulus or surface.E_star  # of the half-space
+
     def compliance(self, surface: Surface, n_asperities: float) -> float:
         """Return how far each newton on the surface lowers the plane that the asperities feel, m/N."""
-        modulus = self.bulk_modulus or surface.E_star
+        modulus = self._modulus(surface)
         if self.reference == "body":
             return BOWL / (modulus * math.sqrt(surface.nominal_area))
         return -LATTICE / (math.pi * modulus * math.sqrt(n_asperities * surface.nominal_area))
@@ -131,12 +134,8 @@ class Interaction:
             return compliance
         if name not in ("conductance", "conductance_si"):
             return 0.0
-        return (
-            (self.bulk_modulus or surface.E_star)
-            * compliance
-            / 2
-            * (resistivity if name == "conductance_si" else 1.0)
-        )
+        rho = resistivity if name == "conductance_si" else 1.0
+        return self._modulus(surface) * compliance / 2 * rho
 
     def bodies(self, surface: Surface, resistivity: float) -> float:
         """Return how the bodies as a whole resist the flux through a unit area of the joint, m^2 K/W.

@@ -99,9 +99,8 @@ def simulate(
 class Forecast:
     """What `rel_err` needs."""
 
-    needed: dict[
-        str, Array
-    ]  # surfaces by quantity, shape (separations,); infinite where nothing ever touches
+    # surfaces by quantity, shape (separations,); infinite where nothing ever touches
+    needed: dict[str, Array]
     surfaces: int  # that will be drawn, at most the limit
     out_of_reach: tuple[tuple[str, float], ...]  # quantities and separations that need more than the limit
 

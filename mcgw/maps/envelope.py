@@ -37,7 +37,7 @@ def _binned(field: Asperities) -> tuple[Ints, Any, tuple[int, int]]:
 def _highest(
     px: Any, py: Any, caps: Any, top: Any, flattest: Any, shape: Any, size: Any, periodic: Any
 ) -> Any:
-    """Height of the envelope above (px, py); `per` is 1/(2R) of each cap."""
+    """Height of the envelope above (px, py); of the caps the fourth numbers are 1/(2R)."""
     x, y, z, per, starts = caps
     rows, columns = shape
     bx, by = size[0] / columns, size[1] / rows
