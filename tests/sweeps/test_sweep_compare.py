@@ -77,7 +77,9 @@ def test_one_mean_of_one_point_that_is_off_breaks_it(sweep, name):
     at = sweep.axes.at(worst.number)
     assert at == {"grading.gamma": 2.0, "ensemble.seed": 2}
     assert worst.quantities[worst.row // 3] == name
-    assert compared.sheet().columns[0].values[0] == "2, 2"
+    sheet, beyond = compared.sheet(), np.count_nonzero(np.abs(compared.residuals) > 3)
+    assert sheet.columns[0].values[0] == "2, 2"
+    assert f"{beyond} of {len(compared.residuals)} beyond 3 standard errors" in dict(sheet.facts).values()
     assert "DISAGREE" in repr(compared)
 
 
