@@ -132,8 +132,9 @@ def test_a_study_has_room(converged):
 
 def test_tradeoff(make_scene, recorded):
     scene = make_scene(title="T", separations=(2.0,), quantities=("area",), n_surfaces=75)
-    figure = draw(inside.tradeoff_figure(made_up(scene)))
-    recorded("drawn.tradeoff", told.drawn(figure))
+    study = made_up(scene)
+    figure = draw(inside.tradeoff_figure(study))
+    recorded("drawn.tradeoff", [*told.drawn(figure), *str(study.sheet((0.1, 1e-4, 1e-7))).splitlines()])
     curve = next(line for line in figure.axes[-1].get_lines() if line.get_label() == "surfaces")
     np.testing.assert_allclose(curve.get_xydata(), [(0.1, 0.05), (9.0, math.hypot(0.004, 0.03))])
 

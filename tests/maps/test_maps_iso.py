@@ -49,8 +49,9 @@ def test_disagreement_is_told():
     """A density four times too small is named, and the rest share it."""
     numbers = numbers_of(SURFACE, "Sq", "Sdq", "Spc", "Spd")
     numbers["Spd"] /= 4
-    with pytest.warns(UserWarning, match=r"disagree.*Spc by a factor of .*Spd by a factor of"):
+    with pytest.warns(UserWarning, match=r"disagree.*Spc by a factor of .*Spd by a factor of") as told:
         mcgw.surface_from(**numbers, pruning=0, nominal_area=1e-6, E_star=1e11)
+    assert told[0].filename == __file__
     numbers["Spd"] *= 4 * 1.02
     assert not moments_from(numbers, pruning=0)[1]
 

@@ -65,6 +65,8 @@ def test_each_way_states_what_it_can_give(study):
     assert 1e-6 < of_mean_surface < 1e-2  # its order is one over the number of contacts
     assert study.advice("values", 1e-6).way.floor < 1e-12
     assert len(study.table()) == 6 * len(WANTS)
+    errors = {rung.n_surfaces: rung.drawn for rung in study.ladder if rung.name == "surfaces"}
+    assert errors[100] == pytest.approx(10 * errors[10_000])
     assert "needs no surfaces" in study.sentence
 
 
@@ -100,6 +102,7 @@ def test_points_and_prices_by_hand(scene):
     assert measured_ways._price(straight, 9.0) == pytest.approx((1.0, 0.05))
     flat = [replace(p, n_surfaces=n, seconds=2.0) for n in sizes]
     assert measured_ways._price(flat, 1e-3) == pytest.approx((2.0 - 0.001 * sum(sizes) / 3, 1e-3))
+    assert measured_ways._price(flat, 1.0) == (0.0, 1.0)
     seconds = np.array([3.0, 6.5, 51.5])
     bent = [replace(p, n_surfaces=n, seconds=s) for n, s in zip(sizes, seconds, strict=True)]
     each, set_up = np.polyfit(sizes, seconds, 1, w=1 / seconds)  # nearest to all three in ratio

@@ -34,6 +34,7 @@ def test_what_is_recorded(make_scene, tmp_path):
     git = subprocess.run(["git", "rev-parse", "HEAD"], cwd=GOLDEN.parent, capture_output=True, text=True)
     assert known["commit"] == (git.stdout.strip() or "unknown")
     assert {"date", "wall_seconds", "seed", "run", "cpu"} <= set(known)
+    assert known["cpu"].endswith(" cores)") == Path("/proc/cpuinfo").exists()
     assert known["sampler"] != "auto"
 
 

@@ -144,7 +144,7 @@ REFUSED = [
     ("load[0]", lambda: CustomLaw((lambda u: u**2.5,), (cube,), (), 0.1)),
     ("area[0]", lambda: CustomLaw((cube,), (lambda u: np.interp(u, [0, 1], [0, 1]),), (), 0.1)),
     ("load[1]", lambda: CustomLaw((cube, lambda u: np.log(1 - u)), (cube,) * 2, (1.0,), 0.1)),
-    ("give the penetration", lambda: CustomLaw((cube, bent), (cube,) * 2, (1,), 0.1).as_data(5.0)),
+    ("x = 2 and 50: give the", lambda: CustomLaw((cube, bent), (cube,) * 2, (2,), 0.1).as_data(5.0)),
     ("write u**3", lambda: CustomLaw((lambda u: (u * u) ** 1.5,), (cube,), (), 0.05).as_data(5.0)),
 ]
 
