@@ -51,22 +51,15 @@ def _highest(
         if best >= top - away * away * flattest:
             break
         for dj in range(-ring, ring + 1):
-            j, shift_y = cj + dj, 0.0
-            if j < 0 or j >= rows:
-                if not periodic:
-                    continue
-                shift_y = size[1] * np.floor(j / rows)
-                j = j % rows
+            turns_y, j = divmod(cj + dj, rows)
             step = 1 if abs(dj) == ring else 2 * ring
             for di in range(-ring, ring + 1, max(step, 1)):
-                i, shift_x = ci + di, 0.0
-                if i < 0 or i >= columns:
-                    if not periodic:
-                        continue
-                    shift_x = size[0] * np.floor(i / columns)
-                    i = i % columns
+                i = ci + di
+                turns_x, i = (0, i) if 0 <= i < columns else divmod(i, columns)
+                if (turns_x or turns_y) and not periodic:
+                    continue
                 for k in range(starts[j * columns + i], starts[j * columns + i + 1]):
-                    dx, dy = x[k] + shift_x - px, y[k] + shift_y - py
+                    dx, dy = x[k] + turns_x * size[0] - px, y[k] + turns_y * size[1] - py
                     best = max(best, z[k] - (dx * dx + dy * dy) * per[k])
     return best
 

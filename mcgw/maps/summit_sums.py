@@ -121,68 +121,20 @@ class Summits:
 
 
 @njit(cache=True)
-def _is_summit(z: Any, j: Any, i: Any) -> Any:
-    """Whether a point is higher than its eight neighbours; of equal ones the last counts.
+def _pass(z: Any, mean: Any, seen: Any, dx: Any, dy: Any, across: Any, sums: Any) -> Any:
+    """Fill `sums`; return which points are summits: higher than their neighbours, or the last of equal ones.
 
-    No point is that has no height, or has a neighbour without. So never are two neighbours, whatever a map
-    holds: one in every square of two points by two at most.
-    """
-    here = z[j, i]
-    for dj in range(-1, 2):
-        for di in range(-1, 2):
-            other = z[j + dj, i + di]
-            later = dj > 0 or (dj == 0 and di > 0)
-            if (dj or di) and not (other < here or (other == here and not later)):
-                return False
-    return True
-
-
-@njit(cache=True)
-def _rise(g: Any, c: Any) -> Any:
-    """Highest value of ``g t + c t^2/2`` for t from -1/2 to 1/2."""
-    if c < 0 and abs(g) < -c / 2:
-        return -g * g / (2 * c)
-    return abs(g) / 2 + c / 8
-
-
-@njit(cache=True)
-def _apex(z: Any, j: Any, i: Any) -> Any:
-    """Highest point, within the summit's own pixel, of the paraboloid through it and its neighbours.
-
-    Above the summit; and its vertex from there along x and y, as near as the pixel's edge, in pixels.
-    """
-    gx, gy = (z[j, i + 1] - z[j, i - 1]) / 2, (z[j + 1, i] - z[j - 1, i]) / 2
-    xx, yy = z[j, i + 1] - 2 * z[j, i] + z[j, i - 1], z[j + 1, i] - 2 * z[j, i] + z[j - 1, i]
-    xy = (z[j + 1, i + 1] - z[j + 1, i - 1] - z[j - 1, i + 1] + z[j - 1, i - 1]) / 4
-    best, x, y = 0.0, 0.0, 0.0
-    for side in (-0.5, 0.5):
-        best = max(best, gx * side + xx / 8 + _rise(gy + xy * side, yy))
-        best = max(best, gy * side + yy / 8 + _rise(gx + xy * side, xx))
-    det = xx * yy - xy * xy
-    if det > 0:
-        x, y = (gy * xy - gx * yy) / det, (gx * xy - gy * xx) / det
-        if 2 * max(abs(x), abs(y)) < 1:
-            best = max(best, gx * x + gy * y + (xx * x * x + yy * y * y) / 2 + xy * x * y)
-    return best, min(max(x, -_HALF), _HALF), min(max(y, -_HALF), _HALF)
-
-
-@njit(cache=True)
-def _pass(
-    z: Any, mean: Any, seen: Any, dx: Any, dy: Any, across: Any, sums: Any, summits: Any, part_of: Any
-) -> Any:
-    """Fill `sums`; write place, height, curvatures and sub-area of each summit; give their number.
-
-    Heights count from their `mean`. Of points that are not `seen`, unless that is empty, nothing is written.
+    Heights count from their `mean`; of points that are not `seen` nothing does.
     """
     rows, columns = z.shape[0] - 8, z.shape[1] - 8
-    found = 0
+    summits = np.zeros((rows, columns), dtype=np.bool_)
     per_x, per_y, per_xx, per_yy = 1 / dx, 1 / dy, 1 / (dx * dx), 1 / (dy * dy)
     column = np.arange(columns) * across // columns
     for j in range(rows):
         row = (j * across // rows) * across
         for i in range(columns):
             b, a = j + 4, i + 4
-            if seen.size and not seen[b, a]:
+            if not seen[b, a]:
                 continue
             c = z[b, a] - mean
             x1, x2, y1, y2 = z[b, a + 1] - mean, z[b, a + 2] - mean, z[b + 1, a] - mean, z[b + 2, a] - mean
@@ -202,23 +154,46 @@ def _pass(
             sums[6, k] += (xx * xx + yy * yy) / 2
             sums[7, k] += (xx1 * xx1 + yy1 * yy1) / 2
             sums[8, k] += sx * sy
-            higher = (c >= w1) & (c >= v1) & (c > x1) & (c > y1)  # no branch: what it takes is guessed wrong
-            if higher and found < part_of.size and _is_summit(z, b, a):
-                rise, x, y = _apex(z, b, a)
-                summits[0, found], summits[1, found] = (a + 0.5 + x) * dx, (b + 0.5 + y) * dy
-                summits[2, found], summits[3, found] = z[b, a] + rise - mean, -(xx + yy) / 2
-                xy = 0.0
-                for p in range(5):
-                    for q in range(5):
-                        xy += _FIRST[p] * _FIRST[q] * (z[b + p - 2, a + q - 2] - mean)
-                xy *= per_x * per_y
-                turn = np.hypot((xx - yy) / 2, xy)
-                summits[4, found], summits[5, found] = turn - (xx + yy) / 2, -turn - (xx + yy) / 2
-                if not summits[5, found] > 0:  # the neighbours are lower: plain differences have a sign
-                    summits[4, found] = summits[5, found] = -(xx1 + yy1) / 2
-                part_of[found] = k
-                found += 1
-    return found
+            if (c >= w1) & (c >= v1) & (c > x1) & (c > y1):  # one branch: what it takes is guessed wrong
+                here, above, below = z[b, a], z[b - 1], z[b + 1]
+                earlier = max(z[b, a - 1], above[a - 1], above[a], above[a + 1])
+                summits[j, i] = here >= earlier and here > max(below[a - 1], below[a + 1])
+    return summits
+
+
+def _apexes(around: Array) -> tuple[Array, Array, Array]:
+    """Highest points, within each summit's own pixel, of paraboloids through three by three points.
+
+    Above the summit; and the vertex from there along x and y, as near as the pixel's edge, in pixels.
+    """
+    (nw, n, ne), (w, c, e), (sw, s, se) = around
+    gx, gy, xx, yy, xy = (e - w) / 2, (s - n) / 2, e - 2 * c + w, s - 2 * c + n, (se - sw - ne + nw) / 4
+
+    def rise(g: Array, c: Array) -> Array:  # of g t + c t^2/2 for t from -1/2 to 1/2
+        return np.divide(-g * g, 2 * c, out=abs(g) / 2 + c / 8, where=abs(g) < -c / 2)
+
+    det = xx * yy - xy * xy
+    x, y = (
+        np.divide(part, det, out=np.zeros_like(det), where=det > 0)
+        for part in (gy * xy - gx * yy, gx * xy - gy * xx)
+    )
+    edges = [gx * side + xx / 8 + rise(gy + xy * side, yy) for side in (-0.5, 0.5)]
+    edges += [gy * side + yy / 8 + rise(gx + xy * side, xx) for side in (-0.5, 0.5)]
+    vertex = gx * x + gy * y + (xx * x * x + yy * y * y) / 2 + xy * x * y
+    inside = np.where(2 * np.maximum(abs(x), abs(y)) < 1, vertex, 0.0)
+    return np.maximum.reduce([inside, 0 * inside, *edges]), x.clip(-_HALF, _HALF), y.clip(-_HALF, _HALF)
+
+
+def _curvatures(around: Array, dx: float, dy: float) -> tuple[Array, Array]:
+    """Mean and principal curvatures of summits in the middle of five by five points, 1/m."""
+    (w2, w1, c, x1, x2), (v2, v1, _, y1, y2) = around[2], around[:, 2]
+    per_xx, per_yy = 1 / (dx * dx), 1 / (dy * dy)
+    xx = (16 * (x1 + w1) - (x2 + w2) - 30 * c) / 12 * per_xx
+    yy = (16 * (y1 + v1) - (y2 + v2) - 30 * c) / 12 * per_yy
+    xy = sum(_FIRST[p] * _FIRST[q] * around[p, q] for p, q in np.ndindex(5, 5)) / (dx * dy)
+    mean, turn = -(xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
+    plain = ((x1 + w1 - 2 * c) * per_xx + (y1 + v1 - 2 * c) * per_yy) / -2
+    return mean, np.where(mean > turn, [mean + turn, mean - turn], plain)
 
 
 def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | None = None) -> Summits:
@@ -228,22 +203,19 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
     points count whose differences and neighbours were; ValueError if none is left.
     """
     z, mean = np.ascontiguousarray(topography.heights), topography.heights.mean()
-    counts = np.empty((0, 0), dtype=np.bool_)
+    counts = np.ones(z.shape, dtype=np.bool_)
     if seen is not None:  # with their neighbours, as far as differences reach
         mode: Literal["wrap", "nearest"] = "wrap" if topography.periodic else "nearest"
         counts = ndimage.minimum_filter(seen, 2 * 2 + 1, mode=mode)  # pixels that the differences reach
     if topography.periodic:
-        z = np.pad(z, EDGE, mode="wrap")
-        counts = np.pad(counts, EDGE, mode="wrap") if seen is not None else counts
+        z, counts = np.pad(z, EDGE, mode="wrap"), np.pad(counts, EDGE, mode="wrap")
     rows, columns = (n - 2 * EDGE for n in z.shape)
     if min(rows, columns) < 4 * across:
         raise ValueError(
             f"{max(columns, 0)} x {max(rows, 0)} points are left: too few for {across} x {across} sub-areas"
         )
     sums = np.zeros((len(SUMS), across * across))
-    most = ((rows + 1) // 2) * ((columns + 1) // 2)  # one in every square of two points by two
-    summits, part = np.empty((6, most)), np.empty(most, dtype=np.int64)
-    found = _pass(z, mean, counts, *topography.pixel, across, sums, summits, part)
+    j, i = np.nonzero(_pass(z, mean, counts, *topography.pixel, across, sums))
     if not sums[0].any():
         raise ValueError("too many points are missing, so none has all its neighbours; use --missing fill")
     if not (np.abs(sums) < LARGEST).all():  # alpha takes their squares
@@ -252,10 +224,16 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
             f"{topography.pixel[0]:.3g} m: squares of their derivatives overflow, or points are missing; "
             "give the right unit and pixel"
         )
-    (dx, dy), added = topography.pixel, EDGE if topography.periodic else 0  # pixels around the map
-    x, y, heights, bends, *curvatures = summits[:, :found].copy()
-    places = x - added * dx, y - added * dy
-    return Summits(sums, *places, heights, bends, np.array(curvatures), part[:found].copy(), topography.pixel)
+    tile = j * across // rows * across + i * across // columns
+    near = np.arange(EDGE - 2, EDGE + 3)
+    around = z[j + near[:, None, None], i + near[:, None]]
+    rise, x, y = _apexes(around[1:4, 1:4])
+    heights, (dx, dy) = around[2, 2] + rise - mean, topography.pixel
+    bends, curvatures = _curvatures(around - mean, dx, dy)
+    first = 0.5 if topography.periodic else 0.5 + EDGE  # centre of the first pixel that counts
+    return Summits(
+        sums, (i + first + x) * dx, (j + first + y) * dy, heights, bends, curvatures, tile, topography.pixel
+    )
 
 
 def coarse_sums_of(topography: Topography, *, across: int = 4, seen: Marks | None = None) -> Summits:

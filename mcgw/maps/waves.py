@@ -164,20 +164,10 @@ def _power(z: Array) -> tuple[Array, Array]:
     """
     rows, columns = z.shape
     x, y = 2 * math.pi * fft.rfftfreq(columns), 2 * math.pi * fft.fftfreq(rows)[:, None]
-    mean = z.mean()
-    periodic = np.empty((rows, x.size), dtype=np.complex128)
-    bands = [slice(first, first + _BAND) for first in range(0, rows, _BAND)]
-    for band in bands:
-        periodic[band] = fft.rfft(z[band] - mean)
-    periodic = fft.fft(periodic, axis=0, overwrite_x=True)
     across, along = fft.rfft(z[-1] - z[0]), fft.fft(z[:, -1] - z[:, 0])[:, None]
-    back_x, back_y = 1 - np.exp(1j * x), 1 - np.exp(1j * y)  # from the last column and row to the first
-    for band in bands:
-        laplacian = 2 * (np.cos(x) + np.cos(y[band]) - 2)
-        laplacian[laplacian == 0] = 1.0
-        periodic[band] -= (across * back_y[band] + along[band] * back_x) / laplacian
-        periodic.real[band] = (periodic.real[band] ** 2 + periodic.imag[band] ** 2) / z.size**2
-    power = periodic.real
+    jumps = across * (1 - np.exp(1j * y)) + along * (1 - np.exp(1j * x))  # from the last row to the first
+    jumps /= 2 * (np.cos(x) + np.cos(y) - 2) + (x + np.abs(y) == 0)
+    power = (np.abs(fft.rfft2(z - z.mean()) - jumps) / z.size) ** 2
     power[0, 0] = 0.0
     waves = np.full(x.size, 2.0)
     waves[0] = 1.0
