@@ -73,25 +73,18 @@ Errors are a `SceneError` (a wrong argument or scene: one line for each mistake)
 (50, 2)
 """
 
-import ast
 import os
 from importlib import import_module
-from pathlib import Path
 from typing import Any
 
+from mcgw.machine.door import homes_of_names
 from mcgw.machine.terminal import drawers
 
 # Threads that wait for others sleep. By default they spin, and a loop of microseconds takes a hundred
 # times as long on a machine that has anything else to do. Read once, when the loops are loaded.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
-# Names and where they come from: the stub beside this file, which type checkers read, is the only list.
-# They are imported on first use: compiling and file formats cost a second, for which `mcgw --help` should
-# not wait.
-_STUB = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
-_HOME = {
-    name.name: each.module for each in _STUB.body if isinstance(each, ast.ImportFrom) for name in each.names
-}
+_HOME = homes_of_names(__file__)
 
 
 def _draw(result: Any, ax: Any, **options: Any) -> Any:

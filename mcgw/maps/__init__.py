@@ -9,29 +9,11 @@
 """
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from mcgw.maps.heights_files import read_heights as read_heights, read_map as read_map
-    from mcgw.maps.map_files import write_map as write_map
-    from mcgw.maps.synthetic import (
-        Asperities as Asperities,
-        Spectrum as Spectrum,
-        asperities_of as asperities_of,
-        gaussian_map as gaussian_map,
-        moments_on_grid as moments_on_grid,
-        spectrum_from as spectrum_from,
-    )
-    from mcgw.maps.topography import Profile as Profile, Topography as Topography
+from mcgw.machine.door import homes_of_names
 
-# Where names come from; they are imported on first use, as those of `mcgw` are.
-_HOMES = {
-    "map_files": "write_map",
-    "heights_files": "read_heights read_map",
-    "synthetic": "Asperities Spectrum asperities_of gaussian_map moments_on_grid spectrum_from",
-    "topography": "Profile Topography",
-}
-_HOME = {name: f"mcgw.maps.{module}" for module, names in _HOMES.items() for name in names.split()}
+_HOME = homes_of_names(__file__)
 
 
 def __getattr__(name: str) -> Any:
