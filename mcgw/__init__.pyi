@@ -35,8 +35,9 @@ from mcgw.ensemble.simulation import simulate as simulate
 from mcgw.ensemble.solution import solve as solve
 from mcgw.errors import RunError as RunError, StoreError as StoreError
 from mcgw.exports.writing import export as export
-from mcgw.jobs.making import merge as merge
-from mcgw.jobs.running import run as run, sweep as sweep
+from mcgw.jobs.blocks import merge as merge
+from mcgw.jobs.running import run as run
+from mcgw.jobs.sweeping import sweep as sweep
 from mcgw.maps.fitted_scene import fitted_scene as fitted_scene
 from mcgw.maps.fitting import fit as fit
 from mcgw.maps.iso import surface_from as surface_from

@@ -88,7 +88,7 @@ def solve(
     """
     from analytic import quantity_of
     from mcgw.ensemble.solution import solve as solved
-    from mcgw.machine.progress import told
+    from mcgw.machine.process import told
     from mcgw.reports.text import solutions_table, solutions_text
 
     if scatter is not None and scatter >= 1:

@@ -148,7 +148,7 @@ def sweep(
 
     example: mcgw sweep runs/demo.toml --over grading.gamma=0.2:2:10 -o gamma.h5
     """
-    from mcgw.jobs.running import sweep as drawn
+    from mcgw.jobs.sweeping import sweep as drawn
     from mcgw.reports.plan import sweep_plan_text
     from mcgw.reports.text import ratios_in_words
     from mcgw.sweeps.axes import axes_of
@@ -176,7 +176,7 @@ def merge(file: Annotated[Path, kinds.file_out("an ensemble", grows=True)]) -> N
     """
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.formats.files import state_of
-    from mcgw.jobs.making import merge as merged
+    from mcgw.jobs.blocks import merge as merged
 
     before = state_of(file)
     found = merged(file)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from mcgw.errors import StoreError
-from mcgw.machine.progress import watched
+from mcgw.machine.process import watched
 
 QUIET, NEWS, ALL = range(3)  # only errors; what was made and found; everything
 _AMOUNT = ContextVar("_AMOUNT", default=NEWS)
@@ -72,7 +72,7 @@ def _same_file(one: Path, other: Path) -> bool:
 def _faults(output: Output, others: Iterable[Output]) -> Iterator[str]:
     """Why a file may not be written: what is read, a run, another output, what it would replace."""
     from mcgw.formats.named_files import HDF5 as SIGNATURE
-    from mcgw.store.lock import LOCK_FILES, parts_of
+    from mcgw.store.ownership import LOCK_FILES, parts_of
 
     path, place = output.path, Path(os.path.realpath(output.path))
     for read in _inputs.get():

@@ -67,7 +67,7 @@ def warm() -> None:
     from analytic import KogutEtsion, Nayak, RandomCurvature
     from mcgw.ensemble.simulation import simulate
     from mcgw.machine.compiling import loops_folder
-    from mcgw.machine.progress import steps
+    from mcgw.machine.process import steps
     from mcgw.maps.envelope import envelope, hidden_summits
     from mcgw.maps.fitting import fit
     from mcgw.maps.synthetic import asperities_of

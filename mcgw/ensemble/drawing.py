@@ -5,7 +5,7 @@ surfaces as for a billion.
 """
 
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import cached_property, reduce
 from itertools import chain
 from operator import add
@@ -17,8 +17,8 @@ import numpy as np
 
 from analytic import quantity_of
 from mcgw.ensemble.results import CHUNK_ROWS, Results, Tables, joined
-from mcgw.machine.in_threads import in_threads, pieces
-from mcgw.machine.memory import check_memory
+from mcgw.machine.compiling import in_threads, pieces
+from mcgw.machine.process import check_memory
 from mcgw.sampling.block import Source, Sums
 from mcgw.sampling.counts import GROUP
 from mcgw.sampling.expected import Expected
@@ -45,14 +45,11 @@ def drawn_blocks(sampler: Source[_Drawn], first: int, stop: int, size: int) -> I
     Each thread draws its own blocks. Sharing the work within a block costs a wake-up per step, which pays
     only for a few, huge surfaces.
     """
-
-    def block(ends: tuple[int, int]) -> _Drawn:
-        return sampler.block(start + ends[0], ends[1] - ends[0])
-
     step = size * numba.get_num_threads() if size > 1 else 1  # a surface that is a block may fill the memory
     for start in range(first, stop, step):
         n = min(step, stop - start)
-        yield from in_threads(block, pieces(n, GROUP if n >= GROUP * numba.get_num_threads() else 1))
+        ends = pieces(n, GROUP if n >= GROUP * numba.get_num_threads() else 1)
+        yield from in_threads(lambda span: sampler.block(*span), [(start + a, b - a) for a, b in ends])
 
 
 def kept(scene: Scene, sums: Sums) -> dict[str, Any]:
@@ -93,19 +90,7 @@ def seconds_per_surface(scene: Scene, sampler: Source[Any]) -> float:
     return float(np.median(times)) / n
 
 
-@contextmanager
-def use_threads(threads: int | None) -> Iterator[None]:
-    """Set the number of threads of the loops, at most those available."""
-    if threads is not None and not (isinstance(threads, int) and threads >= 1):
-        raise ValueError(f"threads = {threads!r}: give a whole number >= 1")
-    before = numba.get_num_threads()
-    numba.set_num_threads(min(threads or before, before))
-    try:
-        yield
-    finally:
-        numba.set_num_threads(before)
-
-
+@dataclass(eq=False)
 class Values:
     """Draws the surfaces of one scene, of a fixed number, and keeps of each all its numbers.
 
@@ -113,15 +98,14 @@ class Values:
     alone and are joined in order: the same bits whoever draws them, and despite interruptions.
     """
 
+    scene: Scene
+    expected: Expected | None = None  # stands for a sampler, to be asked its size
     work = 1.0  # cost of a surface, in any unit
-
-    def __init__(self, scene: Scene, expected: Expected | None = None) -> None:
-        self.scene, self._expected = scene, expected  # the latter stands for a sampler, to be asked its size
 
     @cached_property
     def sampler(self) -> Any:
         """The scene's."""
-        return self._expected or sampler_of(self.scene)
+        return self.expected or sampler_of(self.scene)
 
     @cached_property
     def rows(self) -> int:

@@ -17,8 +17,7 @@ import numpy as np
 from analytic import quantity_of
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.results import Held, Tables
-from mcgw.machine.compiling import njit
-from mcgw.machine.in_threads import in_threads
+from mcgw.machine.compiling import in_threads, njit
 
 Values = dict[str, Array]
 

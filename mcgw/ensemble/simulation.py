@@ -18,7 +18,7 @@ from scipy.special import ndtri
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import CONFIDENCE, MANY, TOO_FEW, Spread, chebyshev, spread_of
-from mcgw.machine.progress import Progress, told
+from mcgw.machine.process import Progress, told
 from mcgw.sampling.counts import GROUP
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene, storable, with_sampling
@@ -69,7 +69,8 @@ def simulate(
     >>> mcgw.simulate(scene, n_surfaces=20).load.shape
     (20, 3)
     """
-    from mcgw.ensemble.drawing import reducer_of, use_threads  # imports the samplers
+    from mcgw.ensemble.drawing import reducer_of  # imports the samplers
+    from mcgw.machine.compiling import use_threads
 
     check_object("simulate", scene, Scene)
     scene = scene.replace(**changes) if changes else scene

@@ -17,7 +17,7 @@ from mcgw.ensemble.results import joined
 from mcgw.ensemble.separation import LOWEST, Asperities
 from mcgw.ensemble.simulation import surfaces_at_loads
 from mcgw.ensemble.solved import Solution
-from mcgw.machine.progress import Progress, told
+from mcgw.machine.process import Progress, told
 from mcgw.scene.kinds import argument, as_toml, check_object
 from mcgw.scene.scene import Scene, storable
 from mcgw.scene.section import nearest

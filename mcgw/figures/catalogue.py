@@ -13,7 +13,7 @@ from mcgw.figures.compared import SCENE, Compared, Mean, Modulus, over_separatio
 from mcgw.figures.panels import GAMMA, PRESSURE, SEPARATION, FigureData, Panel, Series
 from mcgw.figures.studies import spread, spread_panel
 from mcgw.figures.style import power_of_ten, prefixed
-from mcgw.machine.progress import steps
+from mcgw.machine.process import steps
 from mcgw.scene.scene_file import scene_from
 
 _SPREADING = ("load", "area", "stiffness")

@@ -37,11 +37,6 @@ def state_of(path: Path) -> State | None:
     return status.st_ino, status.st_size, status.st_mtime_ns
 
 
-def temporary_beside(path: Path) -> Path:
-    """Return a new name in the same folder, of this process alone, on whatever host."""
-    return path.with_name(f"{_stem(path)}{os.getpid()}-{secrets.token_hex(4)}.tmp")
-
-
 def remove_stale(path: Path) -> None:
     """Remove the temporary files that processes of this host, now dead, left beside a file."""
     for left in path.parent.glob(f"{glob.escape(_stem(path))}*.tmp"):
@@ -102,7 +97,8 @@ def whole_file(path: Path, *, expected: Expected = "anything", folder: Path | No
     followed. If another file than the `expected` one, from `state_of` (None: there must be none), has it at
     the end, that is a FileExistsError. Until then it lies in a `folder` of the same disk, or beside `path`.
     """
-    temporary = temporary_beside((folder or path.parent) / path.name)
+    mine = f"{_stem(path)}{os.getpid()}-{secrets.token_hex(4)}.tmp"  # of this process, on whatever host
+    temporary = (folder or path.parent) / mine
     try:
         with together() as waiting:
             refuse_read_only(path)

@@ -16,7 +16,7 @@ import h5py
 
 from mcgw.errors import StoreError
 from mcgw.formats.named_files import open_regular
-from mcgw.machine.memory import gibibytes, memory_available
+from mcgw.machine.process import gibibytes, memory_available
 
 EXPANSION = 1100  # bytes declared for each byte of the file: deflate reaches 1032
 ENOUGH = 2**20  # bytes that any file may declare

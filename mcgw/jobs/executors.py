@@ -1,4 +1,4 @@
-"""Executors give blocks to workers until none is missing, and heed signals.
+"""Executors give blocks to workers until none is missing.
 
 From Python any `concurrent.futures.Executor` draws blocks; here are those of the command line: worker
 processes of this machine, and those of a dask scheduler. A worker may die at any time and a block may be
@@ -6,6 +6,7 @@ drawn twice: tasks are idempotent, and what counts is what lies on the disk.
 """
 
 import multiprocessing
+import os
 import signal
 import threading
 from collections import deque
@@ -15,46 +16,13 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import Any, TypeVar
 
-from mcgw.errors import RunError, StoppedError, extra
-from mcgw.machine.in_threads import end_with
+from mcgw.errors import RunError, extra
+from mcgw.machine.process import Signals
 
 _Block = TypeVar("_Block")
 
 _IN_HAND = 1024  # blocks given at a time to an executor that does not say how many it takes
 _RESUME = "finished blocks are kept; the same command resumes"
-
-
-class Signals:
-    """The signal that has arrived, if any."""
-
-    number: int | None = None
-
-    def check(self, kept: str) -> None:
-        """Raise if a signal has arrived, with what is kept."""
-        if self.number is not None:
-            name = "interrupted" if self.number == signal.SIGINT else "terminated"
-            raise StoppedError(f"{name}: {kept}", 128 + self.number)
-
-
-@contextmanager
-def heed_signals() -> Iterator[Signals]:
-    """Record Ctrl-C and SIGTERM instead of dying; a second signal acts at once."""
-    signals = Signals()
-    if threading.current_thread() is not threading.main_thread():
-        yield signals
-        return
-
-    def note(number: int, frame: Any) -> None:  # noqa: ARG001
-        if signals.number is not None:
-            raise KeyboardInterrupt
-        signals.number = number
-
-    before = {number: signal.signal(number, note) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield signals
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 def outcome(task: Callable[..., Any], *arguments: Any) -> tuple[Any, Exception | None]:
@@ -121,25 +89,6 @@ def _in_words(error: BaseException) -> str:
     return ": ".join([type(error).__name__, *str(error).splitlines()[:1]])
 
 
-def share_of(executor: Any, threads: int | None, shard: str | None) -> tuple[int, int] | None:
-    """Check who is to draw, and return the share that is named, as (2, 8) for "2/8"."""
-    if threads is not None and threads < 1:
-        raise ValueError(f"threads = {threads}: give a whole number >= 1")
-    if shard is not None and executor is not None:
-        raise ValueError(f"shard = {shard!r}: a share uses threads; leave executor out")
-    if not (executor is None or isinstance(executor, futures.Executor)):
-        raise ValueError(
-            f"executor = {executor!r}: give a concurrent.futures.Executor, such as "
-            "ProcessPoolExecutor(8) or client.get_executor() of a dask client"
-        )
-    if shard is None:
-        return None
-    number, _, of = str(shard).partition("/")
-    if not (number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
-        raise ValueError(f"--shard {shard}: give i/n with 1 <= i <= n")
-    return int(number), int(of)
-
-
 class Jobs(futures.Executor):
     """So many worker processes on this machine, one thread each; if one dies, all are replaced."""
 
@@ -177,6 +126,30 @@ def _begin_worker() -> None:
     parent = multiprocessing.parent_process()
     if parent is not None:
         end_with(parent.sentinel, parent.join)
+
+
+def end_with(pipe: int, gone: Callable[[], object] | None = None) -> None:
+    """End this process at once when the other end of a pipe is closed; nothing may ever be written into it.
+
+    On Linux the kernel kills it, whatever it is busy with: a call into a C library that holds Python's
+    global lock does not delay it. Elsewhere a thread does, as soon as it can take that lock: when `gone`
+    returns, or reading from the pipe.
+    """
+    try:
+        import fcntl
+
+        fcntl.fcntl(pipe, fcntl.F_SETOWN, os.getpid())
+        fcntl.fcntl(pipe, fcntl.F_SETSIG, signal.SIGKILL)
+        fcntl.fcntl(pipe, fcntl.F_SETFL, fcntl.fcntl(pipe, fcntl.F_GETFL) | os.O_ASYNC)
+    except (ImportError, AttributeError, OSError):
+        pass  # not Linux
+
+    # Also there: the parent may have died before the kernel was asked.
+    def follow() -> None:
+        gone() if gone else os.read(pipe, 1)
+        os._exit(1)
+
+    threading.Thread(target=follow, daemon=True, name="mcgw-lifeline").start()
 
 
 @contextmanager

@@ -1,26 +1,23 @@
-"""``mcgw.run`` and ``mcgw.sweep``: from a scene, or many, to a file: begin, resume, extend, share."""
+"""``mcgw.run``: from a scene to its file, at once or in blocks: begin, resume, extend, share."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator
 from concurrent.futures import Executor
 from pathlib import Path
-from time import monotonic
-from typing import TYPE_CHECKING, Any, overload
+from time import monotonic, perf_counter
+from typing import Any, overload
 
-from mcgw.ensemble.drawing import use_threads
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import forecast, without_rule
-from mcgw.jobs.executors import share_of
-from mcgw.jobs.making import make
-from mcgw.machine.progress import Progress, told
+from mcgw.errors import RunError, in_one_line
+from mcgw.jobs.blocks import Done, in_blocks
+from mcgw.machine.process import Progress, Signals, heed_signals, told
 from mcgw.sampling.counts import GROUP
 from mcgw.scene.kinds import check_object
-from mcgw.scene.scene import Scene, storable
-from mcgw.store.ensembles import open_ensemble, open_sweep
-from mcgw.store.place import as_recorded
-from mcgw.store.run_plan import Plan
-
-if TYPE_CHECKING:
-    from mcgw.sweeps.sweep import Sweep
+from mcgw.scene.scene import Scene
+from mcgw.store.ensembles import open_ensemble
+from mcgw.store.ownership import locked
+from mcgw.store.place import as_recorded, check_room, drop_leftovers, finished, put, tidy
+from mcgw.store.run_plan import RECORD, Plan, Span
 
 
 @overload
@@ -131,125 +128,72 @@ def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
     yield fixed.replace(n_surfaces=last)
 
 
-_Over = Mapping[str, Iterable[Any]]
+def share_of(executor: Any, threads: int | None, shard: str | None) -> tuple[int, int] | None:
+    """Check who is to draw, and return the share that is named, as (2, 8) for "2/8"."""
+    if threads is not None and threads < 1:
+        raise ValueError(f"threads = {threads}: give a whole number >= 1")
+    if shard is not None and executor is not None:
+        raise ValueError(f"shard = {shard!r}: a share uses threads; leave executor out")
+    if not (executor is None or isinstance(executor, Executor)):
+        raise ValueError(
+            f"executor = {executor!r}: give a concurrent.futures.Executor, such as "
+            "ProcessPoolExecutor(8) or client.get_executor() of a dask client"
+        )
+    if shard is None:
+        return None
+    number, _, of = str(shard).partition("/")
+    if not (number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
+        raise ValueError(f"--shard {shard}: give i/n with 1 <= i <= n")
+    return int(number), int(of)
 
 
-@overload
-def sweep(
-    scene: Scene,
-    over: _Over,
-    *,
-    zipped: bool = ...,
-    path: str | Path | None = ...,
-    threads: int | None = ...,
-    executor: Executor | None = ...,
-    shard: None = ...,
-    progress: Progress = ...,
-) -> "Sweep": ...
-@overload
-def sweep(
-    scene: Scene, over: _Over, *, zipped: bool = ..., path: str | Path, threads: int | None = ...,
-    shard: str, progress: Progress = ...,
-) -> int: ...  # fmt: skip
-def sweep(
-    scene: Scene,
-    over: _Over,
-    *,
-    zipped: bool = False,
-    path: str | Path | None = None,
-    threads: int | None = None,
-    executor: Executor | None = None,
-    shard: str | None = None,
-    progress: Progress = None,
-) -> "Sweep | int":
-    """Find means and standard deviations of many scenes, which share their surfaces where possible.
+def make(
+    plan: Plan,
+    progress: Done,
+    executor: Executor | None,
+    threads: int | None,
+    part: tuple[int, int] | None,
+) -> int:
+    """Draw what is missing of a file and make it; or of its blocks a share, for `mcgw.merge` to make it of.
 
-    Points whose heights have the same law, number and seed share their surfaces, whatever their surfaces'
-    parameters, gradings and contact laws are: these are drawn once, and differences between such points
-    have no sampling noise. Where points need other cells of heights, as tables with kinks and laws that
-    yield do, all are drawn on cells with the edges of all: there a point drawn alone has other surfaces, else
-    the same bits. Of eight exponential gradings or more under Hertz's law only the softest and the stiffest
-    are computed, for sums are linear in gamma: the others have the means and deviations of single runs to
-    1e-12.
-
-    Parameters
-    ----------
-    scene : Scene
-        What all points have in common, its seed too.
-    over : dict of str to sequence
-        Keys as in a scene file, as "grading.gamma" or "ensemble.n_asperities", and the values of each as
-        there; or a whole table, as "grading", whose values may also be gradings as `mcgw.Table`, or Python
-        functions, which are resolved over the heights of `scene`.
-    zipped : bool, optional
-        The first values of all keys make one point, the second ones another. Default: every value of one key
-        goes with every value of all others.
-    path : str or Path, optional
-        A file for it, which appears when all is drawn (`mcgw.open_sweep`). The same call again draws nothing,
-        or resumes where it was interrupted; if the scene has no seed, it uses that of the file.
-    threads : int, optional
-        Cores: threads, or processes or workers of the executor. Default: all. The result is the
-        same, bit by bit, for any number.
-    executor : concurrent.futures.Executor, optional
-        What draws into the file of `path`, as in `mcgw.run`.
-    shard : str, optional
-        "2/8": draw only the second of eight shares into the folder beside `path`, as one of eight jobs; then
-        `mcgw.merge`.
-    progress : bool or callable, optional
-        True: a bar; a function: called with (done, total) surfaces, each weighted by what it takes.
-
-    Returns
-    -------
-    Sweep
-        With arrays of the shape of the axes and separations. With `shard`: the number of surfaces of the
-        whole that are still missing.
-
-    Raises
-    ------
-    SceneError
-        With the mistakes of all points at once, each with the point it is of.
-    StoreError
-        If the memory is too small, the file cannot be written there, or the place belongs to something else.
-    RunError
-        If it was interrupted, with a file; what is done is kept.
-    ValueError
-        If another argument is wrong.
-
-    Examples
-    --------
-    >>> import mcgw
-    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
-    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=100, seed=1)
-    >>> sweep = mcgw.sweep(scene, {"grading.gamma": [0.5, 1.0, 2.0], "ensemble.count": ["fixed", "poisson"]})
-    >>> sweep.mean("load").shape
-    (3, 2, 3)
-    >>> alone = mcgw.simulate(sweep.scene((2, 0)))
-    >>> bool((alone.mean("load") == sweep.mean("load")[2, 0]).all())
-    True
-    >>> both = {"ensemble.count": "fixed"}
-    >>> stiffer = sweep.difference("load", {"grading.gamma": 2.0, **both}, {"grading.gamma": 1.0, **both})
-    >>> stiffer.gain.round()
-    array([6., 6., 5.])
-    >>> sweep.ratio("load", (2, 0), (1, 0)).ratio.round(2)
-    array([1.71, 1.86, 1.93])
+    An executor draws the blocks, or threads of this process: one writes a block while others draw the next.
+    Of a share `part` has its number, from 1, and of how many. Returns how many surfaces are then missing of
+    the whole.
     """
-    from mcgw.sweeps.axes import axes_of  # of which a run needs nothing
-    from mcgw.sweeps.points import Points, weighted
+    if finished(plan) < plan.total:
+        check_room(plan)
+        if part:
+            tidy(plan.path)
+        with heed_signals() as signals, locked(plan.folder, shared=part is not None) as new:
+            if not (part or new):
+                drop_leftovers(plan.path)
+            if finished(plan) < plan.total:  # no other process was faster
+                several = executor or part or plan.axes or (plan.folder / RECORD).exists()
+                try:
+                    if not several and plan.total <= plan.reducers[0].rows > 1:
+                        return _at_once(plan, threads, progress, signals)
+                    return in_blocks(plan, executor, threads, part, progress, signals)
+                except OSError as error:
+                    raise RunError(
+                        f"{in_one_line(error)}; finished blocks are kept in {plan.folder}; once this is "
+                        "fixed, the same command resumes"
+                    ) from None
+    tidy(plan.path)
+    progress(sum(one.scene.n_surfaces * one.work for one in plan.reducers))
+    return 0
 
-    check_object("sweep", scene, Scene)
-    if path is None and not (executor is None and shard is None):
-        raise ValueError("executor, shard: they need a file; give path, or leave them out")
 
-    def resolved(grading: Any) -> Any:
-        return storable(scene.replace(grading=grading)).grading
+def _at_once(plan: Plan, threads: int | None, progress: Done, signals: Signals) -> int:
+    """All surfaces of a scene in this thread, and their file in one step. Only with the lock."""
 
-    axes = axes_of(over, zipped=zipped, resolve=resolved)
-    if path is None:
-        with use_threads(threads), told(progress, "surfaces") as tell:
-            return Points.of(scene, axes).in_memory(tell)
-    path = Path(path)
-    scene = as_recorded(scene, path)
-    part = share_of(executor, threads, shard)
-    with told(progress, "surfaces") as tell:
-        plan = Plan(Points.of(scene, axes), path)
-        left = make(plan, weighted(plan.reducers, tell), executor, threads, part)
-    return left if part else open_sweep(path)
+    def go_on(done: float) -> bool:
+        signals.check("nothing was saved, because the run is one block; the same command starts it again")
+        progress(done)
+        return True
+
+    started = perf_counter()
+    progress(0)
+    tables = plan.draw(Span(0, plan.total), threads, go_on)
+    seconds = perf_counter() - started
+    put(plan, lambda: plan.contents([plan.reducers[0].held([tables])], seconds))
+    return 0

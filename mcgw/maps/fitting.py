@@ -12,7 +12,7 @@ from scipy.special import ndtr, stdtrit
 
 from analytic import SpectralMoments
 from analytic.arrays import Array
-from mcgw.machine.progress import told
+from mcgw.machine.process import told
 from mcgw.maps.estimates import SUMMITS, Estimate, Roughness, Visible
 from mcgw.maps.fit import Fit, fit_prepared
 from mcgw.maps.fit_cautions import cautions, cautions_of_several, profile_cautions

@@ -20,7 +20,7 @@ from mcgw.figures.panels import FigureData, Panel, Series, draw
 from mcgw.figures.studies import quantity_panel, spread_panel
 from mcgw.figures.style import SEEN, STYLE, grading_label
 from mcgw.formats.table import Column, Table, evenly, typeset
-from mcgw.machine.progress import told
+from mcgw.machine.process import told
 from mcgw.machine.terminal import one_line, plain_text
 from mcgw.reports.text import answer_table, by_load
 from mcgw.scene.cautions import cautions, other_laws

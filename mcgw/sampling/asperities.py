@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.arrays import Array, Ints
-from mcgw.machine.memory import check_memory
+from mcgw.machine.process import check_memory
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.counted import extra_heights, table_of
 from mcgw.sampling.counts import counts_of, generator

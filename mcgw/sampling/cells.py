@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 from analytic import Grading, HeightLaw, PiecewiseSeries, bends
 from analytic.arrays import Array
 from analytic.quadrature import gauss_legendre
-from mcgw.machine.in_threads import in_threads
-from mcgw.machine.memory import kept
+from mcgw.machine.compiling import in_threads
+from mcgw.machine.process import kept
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, product
 from mcgw.sampling.spacing import refined, spaced
 from mcgw.sampling.stretches import SMALLEST, begins_and_breaks, losses
@@ -101,7 +101,7 @@ def edges_before_grading(scene: Scene, given: Sequence[float] = (), *, split: bo
     return _edges(law, scene.n_asperities if split else 0, *asked)
 
 
-@kept(8)
+@kept
 def _edges(law: HeightLaw, n: int, *asked: bytes) -> Array:
     """Edges that suit the height law and the contact law, whatever the grading."""
     begins, breaks, marks = (np.frombuffer(part) for part in asked)
@@ -120,7 +120,7 @@ def cut(scene: Scene, mesh: Mesh, starts: Array) -> Mesh:
     return _mesh(scene.heights, float(scene.lowest), edges.tobytes())
 
 
-@kept(8)  # another grading asks for the same, and so does the number in each cell
+@kept  # another grading asks for the same, and so does the number in each cell
 def _mesh(law: HeightLaw, lowest: float, asked: bytes) -> Mesh:
     """Return the mesh on these edges."""
     edges = np.frombuffer(asked)
@@ -156,7 +156,7 @@ def _range(law: HeightLaw, share: float, lowest: float) -> tuple[float, float]:
     return max(lowest, low), high
 
 
-@kept(8)
+@kept
 def _rare_heights(law: HeightLaw, share: float) -> tuple[float, float]:
     """Heights that this share of all lies below, and above."""
     rare = np.array(share)

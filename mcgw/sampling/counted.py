@@ -12,7 +12,7 @@ import numpy as np
 from analytic import quantity_of
 from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
-from mcgw.machine.memory import check_memory
+from mcgw.machine.process import check_memory
 from mcgw.sampling.block import Layout, Sampler, Sums
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counts import Counts, contacts_above, counts_of

@@ -18,8 +18,7 @@ import numpy as np
 from numba import get_num_threads
 
 from analytic.arrays import Array, Ints
-from mcgw.machine.compiling import njit
-from mcgw.machine.in_threads import in_threads
+from mcgw.machine.compiling import in_threads, njit
 from mcgw.sampling.block import Layout
 from mcgw.sampling.kernels import BUFFER, PLAIN, ROOTED, TOGETHER, WORDS, add_uniforms, unfold
 from mcgw.sampling.philox import CELLS, centred

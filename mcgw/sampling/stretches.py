@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from analytic import Grading
 from analytic.arrays import Array, Ints
 from analytic.laws import Branch
-from mcgw.machine.memory import kept
+from mcgw.machine.process import kept
 from mcgw.scene.scene import Scene
 
 _NOTHING = 1e-12  # penetration
@@ -37,7 +37,7 @@ def stretches_of(scene: Scene, branch: Branch, low: float, high: float) -> Stret
     return _stretches(branch, scene.modulus, np.array(scene.all_separations).tobytes(), low, high)
 
 
-@kept(8)  # the cells and the rows on them ask for the same
+@kept  # the cells and the rows on them ask for the same
 def _stretches(branch: Branch, grading: Grading, separations: bytes, low: float, high: float) -> Stretches:
     h = np.frombuffer(separations)
     found = branch.regimes(grading, h, low, high)

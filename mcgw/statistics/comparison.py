@@ -11,7 +11,7 @@ from mcgw.ensemble.ensemble import Ensemble, how_many, shown
 from mcgw.ensemble.intervals import interval_columns
 from mcgw.ensemble.results import heading
 from mcgw.formats.table import SEPARATION, Column, Drawn, Table, joined, stacked
-from mcgw.machine.progress import Progress, steps
+from mcgw.machine.process import Progress, steps
 from mcgw.scene.kinds import check_object
 from mcgw.statistics.verdict import Check, Tested, laws_of_values, tested, together, verdict
 from mcgw.sweeps.axes import label

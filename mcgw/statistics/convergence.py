@@ -14,7 +14,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Results, joined
 from mcgw.ensemble.simulation import simulate
 from mcgw.formats.table import Column, Drawn, Table, evenly
-from mcgw.machine.progress import Progress, steps
+from mcgw.machine.process import Progress, steps
 from mcgw.machine.terminal import brief
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene

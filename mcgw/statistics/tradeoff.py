@@ -21,7 +21,7 @@ from analytic import MeasuredHeights, MeasuredRadii
 from mcgw.ensemble.simulation import in_words
 from mcgw.errors import RunError
 from mcgw.formats.table import Column, Drawn, Table
-from mcgw.machine.progress import Progress, told
+from mcgw.machine.process import Progress, told
 from mcgw.scene.kinds import argument, check_object
 from mcgw.scene.scene import Scene
 from mcgw.statistics.measured_ways import REPEATS, Answers, Point, moved, prices, sized

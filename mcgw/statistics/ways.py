@@ -13,7 +13,7 @@ from scipy.special import ndtri
 
 from mcgw.ensemble.intervals import CONFIDENCE
 from mcgw.ensemble.simulation import MOST_SURFACES, forecast, surfaces_at_load
-from mcgw.machine.memory import kept
+from mcgw.machine.process import kept
 from mcgw.sampling.expected import expected
 from mcgw.scene.ensemble import promise_of
 from mcgw.scene.scene import Scene
@@ -76,7 +76,7 @@ def wants_of(name: str) -> tuple[str, ...]:
     return ("mean", "std", *laws)
 
 
-@kept(64)
+@kept
 def of_one(scene: Scene, want: str) -> float:
     """Bound of the error from one surface, by exact theory; it falls with the root of their number."""
     h, q = scene.separations[0], scene.quantities[0]

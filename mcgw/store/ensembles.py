@@ -15,7 +15,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from
 from mcgw.store.h5_reading import look, read_tables
 from mcgw.store.h5_writing import RUN_TYPE
-from mcgw.store.lock import parts_of
+from mcgw.store.ownership import parts_of
 from mcgw.store.run_plan import RECORD, Plan, in_files
 
 if TYPE_CHECKING:

@@ -44,26 +44,19 @@ _PLAIN: Any = {"fletcher32": True}
 class SteadyFile(FileIO):
     """A new file for the HDF5 library that never shows it an error, for it may crash on one.
 
-    After the first error nothing more is written; `check` raises it.
+    After the first `error` nothing more is written; who writes raises it.
     """
 
-    def __init__(self, path: Path) -> None:
-        super().__init__(path, "x+")
-        self._error: OSError | None = None
-
-    def check(self) -> None:
-        """Raise the first error, if there was one."""
-        if self._error:
-            raise self._error
+    error: OSError | None = None
 
     def write(self, data: Any) -> int:
         """Write all of it."""
         left = memoryview(data).cast("B")
         try:
-            while left and not self._error:
+            while left and not self.error:
                 left = left[super().write(left) or 0 :]
         except OSError as error:
-            self._error = error
+            self.error = error
         return memoryview(data).nbytes
 
     def truncate(self, size: int | None = None) -> int:
@@ -71,7 +64,7 @@ class SteadyFile(FileIO):
         try:
             return super().truncate(size)
         except OSError as error:
-            self._error = self._error or error
+            self.error = self.error or error
             return size or 0
 
     def readinto(self, buffer: Any) -> int:
@@ -88,14 +81,13 @@ def write(path: Path, contents: Labelled, of: str = "", go_on: Callable[[], None
     `of` says what the numbers are of, which `digest` is over as well; `go_on` is called often, and raises if
     this is to end, as OSError is if the disk does not take it.
     """
-    with closing(SteadyFile(path)) as raw:
+    with closing(SteadyFile(path, "x+")) as raw:
         try:
             with h5py.File(raw, "w", libver=_LIBVER) as file:
                 _fill(file, contents, of, raw, go_on)
-        except Exception:  # HDF5 reports a full disk as any of a dozen
-            raw.check()
-            raise
-        raw.check()
+        finally:
+            if raw.error:  # which HDF5 reports as any of a dozen
+                raise raw.error
 
 
 def _fill(
@@ -111,7 +103,8 @@ def _fill(
                 data, sha = empty_table(file, name, n, values), sha_of(values)
             data[first : first + some] = values
             sha.update(values.reshape(-1))
-            raw.check()
+            if raw.error:
+                raise raw.error
             if go_on:
                 go_on()
         about = {"units": one.units, "long_name": one.long_name, "sha256": sha.hexdigest()}

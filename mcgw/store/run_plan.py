@@ -13,6 +13,7 @@ of valid shards is the only record of progress.
 """
 
 import hashlib
+import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -24,17 +25,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import tomli_w
 
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import GROUP, Labelled, Results, Rows, Tables, Variable
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import Expected, check_output, sync, whole_file
+from mcgw.machine.process import commit, processor, versions
 from mcgw.scene.scene import Scene
-from mcgw.scene.scene_file import scene_from
+from mcgw.scene.scene_file import scene_document, scene_from
 from mcgw.store.h5_reading import look, read_rows, read_tables
-from mcgw.store.h5_writing import BLOCK_TYPE, FILETYPE, FORMAT, RUN_TYPE, write
-from mcgw.store.identity import another, commit, processor, versions, written
-from mcgw.store.lock import parts_of, refuse_link
+from mcgw.store.h5_writing import BLOCK_TYPE, FILETYPE, FORMAT, MOST_TEXT, RUN_TYPE, write
+from mcgw.store.ownership import another, parts_of, refuse_link
 
 if TYPE_CHECKING:
     from mcgw.ensemble.drawing import GoOn, Values
@@ -113,7 +115,16 @@ class Plan:
         self.asked, self.path, self.folder = asked, path, parts_of(path)
         self.shards_folder, draws = self.folder / "shards", versions(of_draws=True)
         if isinstance(asked, Scene):
-            self.scene, self.axes, (self.text, key) = asked, "", written(asked)
+            document = scene_document(asked)
+            self.scene, self.axes, self.text = asked, "", tomli_w.dumps(document)
+            if len(self.text.encode()) > MOST_TEXT:
+                raise StoreError(
+                    f"scene: its lists need {len(self.text)} characters, but a file of results holds at most "
+                    f"{MOST_TEXT}; list fewer summits, or simulate in memory"
+                )
+            document["ensemble"] |= {"n_asperities": asked.n_asperities}  # whoever gave it
+            del document["ensemble"]["n_surfaces"]
+            key = hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()
             self.sampler = sampler or self.reducers[0].sampler.name
             words, self.of_all = (key, self.sampler), f"{key} {asked.n_surfaces}"
         else:
@@ -167,7 +178,7 @@ class Plan:
 
     def draw(self, span: Span, threads: int | None, *go_on: "GoOn") -> Tables:
         """Return what is kept of some surfaces of one group; it does not depend on `threads`."""
-        from mcgw.ensemble.drawing import use_threads  # imports the samplers
+        from mcgw.machine.compiling import use_threads  # imports Numba
 
         group, first = self.blocks[span] if self.axes else (0, span.first)
         with use_threads(threads):

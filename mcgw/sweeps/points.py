@@ -26,8 +26,7 @@ from mcgw.ensemble.pooled import Pooled, pooled_from, tables_of
 from mcgw.ensemble.results import Tables, joined
 from mcgw.ensemble.simulation import without_rule
 from mcgw.formats.named_files import loads
-from mcgw.machine.memory import check_memory
-from mcgw.machine.progress import steps
+from mcgw.machine.process import check_memory, steps
 from mcgw.sampling.shared import Shared, common_edges, shared, to_be_shared
 from mcgw.scene.cautions import cautions
 from mcgw.scene.reading import with_changes

@@ -15,7 +15,7 @@ from pathlib import Path
 import records
 from timing import parser_of
 
-from mcgw.store.identity import processor
+from mcgw.machine.process import processor
 
 BENCHES = (
     "bench_analytic",

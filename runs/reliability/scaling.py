@@ -18,7 +18,8 @@ import distributed
 import numpy as np
 
 import mcgw
-from mcgw.jobs.executors import Jobs, Signals, drive
+from mcgw.jobs.executors import Jobs, drive
+from mcgw.machine.process import Signals
 from mcgw.store.run_plan import Span, commit_shard
 
 SECONDS, ROWS, COLUMNS = 1.0, 1024, 128

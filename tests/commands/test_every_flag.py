@@ -41,7 +41,7 @@ FIT, LINES = "fit @map.npy --pixel 1um --cutoff none -o f.toml", "fit @p.txt --c
 ROWS = [
     *(
         row
-        for line, target in ((RUN, "jobs.running:run"), (SWEEP, "jobs.running:sweep"))
+        for line, target in ((RUN, "jobs.running:run"), (SWEEP, "jobs.sweeping:sweep"))
         for row in (
             (line, target, "--threads 1", {"threads": 1, "executor": None, "shard": None}),
             (line, target, "--shard 1/2", {"shard": "1/2", "executor": None, "threads": None}),
@@ -51,11 +51,11 @@ ROWS = [
             (line, "jobs.executors:dask_executor", "--dask tcp://h:1", {"address": "tcp://h:1"}),
         )
     ),
-    (SWEEP, "jobs.running:sweep",
+    (SWEEP, "jobs.sweeping:sweep",
      "--over ensemble.seed=-1:3:2 --over surface.eta=3:1:5 --over contact.law=x:1:2,0.5,auto",
      {"over": {"grading.gamma": [1, 2], "ensemble.seed": [-1, 3], "surface.eta": [3, 2.5, 2, 1.5, 1],
                "contact.law": ["x:1:2", 0.5, "auto"]}, "zipped": False}),
-    (SWEEP, "jobs.running:sweep", "--zip", {"zipped": True}),
+    (SWEEP, "jobs.sweeping:sweep", "--zip", {"zipped": True}),
     (f"{SWEEP} --zip --over ensemble.seed=1,2", "reports.plan:sweep_plan_text", "--plan",
      {"asked.axes.size": 2}),
     ("show --plan @s.toml", "reports.plan:plan_text",

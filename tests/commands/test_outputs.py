@@ -11,7 +11,7 @@ from functools import partial
 
 import h5py
 import pytest
-from oracles.inside import temporary_beside, whole_file, write_whole
+from oracles.inside import whole_file, write_whole
 from oracles.overwrites import CASES, attempt, contents, prepare, ways
 from oracles.said import without_notes
 
@@ -156,14 +156,14 @@ def test_leftovers_of_the_dead_go_with_the_next_output(here):
     """Those of the living stay, and of whom nobody can ask."""
     with subprocess.Popen([sys.executable, "-c", ""]) as dead:
         pass
-    mine = temporary_beside(here / "x.csv")
-    pids = (dead.pid, "some", 10**30)
-    theirs, *odd = (mine.with_name(mine.name.replace(f"-{os.getpid()}-", f"-{x}-")) for x in pids)
-    for path in (mine, theirs, *odd):
-        path.touch()
-    assert theirs != mine
-    assert main(["show", "e.h5", "--csv", "x.csv"]) == 0
-    assert [path.exists() for path in (mine, theirs, *odd)] == [True, False, True, True]
+    with whole_file(here / "x.csv") as mine:
+        pids = (dead.pid, "some", 10**30)
+        theirs, *odd = (mine.with_name(mine.name.replace(f"-{os.getpid()}-", f"-{x}-")) for x in pids)
+        for path in (mine, theirs, *odd):
+            path.touch()
+        assert theirs != mine
+        assert main(["show", "e.h5", "--csv", "x.csv"]) == 0
+        assert [path.exists() for path in (mine, theirs, *odd)] == [True, False, True, True]
 
 
 def test_a_disk_that_does_not_flush_folders_is_no_error(tmp_path, make_scene, monkeypatch):

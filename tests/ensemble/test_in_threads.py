@@ -10,7 +10,7 @@ from numba import get_num_threads
 from oracles.inside import use_threads
 
 import analytic
-from mcgw.machine.in_threads import in_threads
+from mcgw.machine.compiling import in_threads
 
 
 def test_two_calls_run_at_the_same_time():

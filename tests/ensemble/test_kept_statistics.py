@@ -104,7 +104,7 @@ def test_the_file_is_read_by_others_and_says_when_it_is_damaged(tmp_path):
 
 
 def test_what_does_not_fit_is_refused(monkeypatch):
-    monkeypatch.setattr("mcgw.machine.memory.memory_available", lambda: 2**28)
+    monkeypatch.setattr("mcgw.machine.process.memory_available", lambda: 2**28)
     with pytest.raises(ValueError, match="covariances between 3200 numbers needs"):
         mcgw.simulate(scene(separations=np.linspace(0, 4, 800), n_surfaces=2, keep="statistics"))
 

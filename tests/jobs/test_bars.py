@@ -9,7 +9,7 @@ import pytest
 
 import mcgw
 from mcgw.cli import main
-from mcgw.machine.progress import steps, told as asked, watched
+from mcgw.machine.process import steps, told as asked, watched
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "0.1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0], n_surfaces=4, seed=1)

@@ -15,7 +15,7 @@ from oracles.said import without_notes
 
 import mcgw
 from mcgw.errors import StoreError
-from mcgw.machine import memory
+from mcgw.machine import process as memory
 
 resource = pytest.importorskip("resource")
 
@@ -44,7 +44,7 @@ def test_commands_work_where_the_memory_suffices(tmp_path):
 
 
 def test_what_may_be_taken_heeds_the_limit():
-    code = "from mcgw.machine.memory import memory_available; print(memory_available())"
+    code = "from mcgw.machine.process import memory_available; print(memory_available())"
     assert int(limited(1024, "-c", code).stdout) < 1024 * MIB
 
 
@@ -66,7 +66,7 @@ def test_the_least_of_what_machine_group_and_user_leave(monkeypatch, machine, us
     group = "/sys/fs/cgroup/memory"
     files = {"/proc/meminfo": machine, f"{group}.current": used, f"{group}.max": most}
     files["/proc/self/status"] = ["VmPeak: 9 kB", "VmSize: 2 kB"]
-    monkeypatch.setattr("mcgw.machine.memory._lines", files.__getitem__)
+    monkeypatch.setattr("mcgw.machine.process._lines", files.__getitem__)
     limit = resource.RLIM_INFINITY if limit is None else limit
     monkeypatch.setattr(resource, "getrlimit", lambda what: (limit, resource.RLIM_INFINITY))
     assert memory_available() == least

@@ -6,7 +6,7 @@ import scipy.stats
 
 import analytic
 import mcgw
-from mcgw.machine.memory import kept
+from mcgw.machine.process import kept
 from mcgw.sampling.rules import product
 
 
@@ -47,7 +47,7 @@ def test_scenes_drawn_after_others_are_those_drawn_alone(make_scene):
 def test_only_what_cannot_change_is_remembered():
     calls = []
 
-    @kept(4)
+    @kept
     def asked(argument):
         calls.append(argument)
         return argument

@@ -17,8 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from analytic.arrays import Array, Ints
-from mcgw.machine.compiling import njit
-from mcgw.machine.in_threads import in_threads, pieces
+from mcgw.machine.compiling import in_threads, njit, pieces
 from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.response.rows import Rows, hertz_rows

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from analytic import HeightLaw, quantity_of
 from analytic.arrays import Array, Ints
-from mcgw.machine.memory import kept
+from mcgw.machine.process import kept
 from mcgw.sampling.spacing import SURE
 from mcgw.scene.scene import Scene
 
@@ -150,7 +150,7 @@ class Sixteen:
         return np.asarray(np.where(self.contacts > SURE, total, 0.0))
 
 
-@kept(8)
+@kept
 def _quantiles(law: HeightLaw, separations: bytes) -> tuple[Array, Array]:
     """Share of heights above each separation, and 16 equally likely distances of those from it."""
     h, share = np.frombuffer(separations), (np.arange(16) + 0.5) / 16

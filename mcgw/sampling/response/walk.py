@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.arrays import Array, Ints
-from mcgw.machine.compiling import njit
-from mcgw.machine.in_threads import in_threads
+from mcgw.machine.compiling import in_threads, njit
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.response.rows import Rows
 from mcgw.sampling.response.series import (

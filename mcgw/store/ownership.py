@@ -1,11 +1,14 @@
-"""The lock of a file being made: one process writes it, or several that each make a share of its blocks.
+"""Whose a file in the making is: one process has its lock, or several that share; and which run may go on.
 
-It lies in the folder of the run (`parts_of`) and goes together with the folder when nothing
+The lock lies in the folder of the run (`parts_of`) and goes together with the folder when nothing
 else is left there. The system frees it when its holder dies, however that happens. It is the lock of an
 SQLite file that stays empty, which every system has. Such a lock goes when *any* descriptor of its file is
-closed, so nothing else may open that file: who holds it stands in another one.
+closed, so nothing else may open that file: who holds it stands in another one. A disk that keeps no locks, as
+NFS or Lustre without them, is refused.
 
-A disk that keeps no locks, as NFS or Lustre without them, is refused.
+Runs may be one whose surfaces are the same, whatever their number. Besides its scene, the numbers of a run
+depend on the versions of what draws. In their last digits they depend on the kind of processor as well, which
+a run may change on its way, as the nodes of a cluster do: to 1e-12 they are the same.
 """
 
 import os
@@ -16,16 +19,19 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from time import monotonic, sleep
+from typing import Any
 
 from filelock import ReadWriteLock, Timeout
 
 from mcgw.errors import StoreError
-from mcgw.formats.files import write_whole
-from mcgw.formats.named_files import read_text
+from mcgw.formats.named_files import loads, read_text
+from mcgw.scene.scene_file import scene_from
+from mcgw.scene.section import shortened
 
 PATIENCE = 1.0  # seconds: a process that was killed may need a moment to die
 _LOCK, _HOLDER = "lock.db", "holder"
 LOCK_FILES = (_HOLDER, _LOCK)
+Question = tuple[str, str, str]  # text of a scene, axes of a sweep or none, versions that draw
 _MOST_BYTES = 200
 _UNKNOWN = "another process (or by none, on a disk that keeps no locks)"
 
@@ -54,11 +60,10 @@ def locked(folder: Path, *, shared: bool = False, patience: float | None = None)
                 raise LockedError(f"{folder}: {problem}")
             sleep(0.02)
         with suppress(OSError):  # a full disk; it is only for people
-            if shared:
-                (folder / _HOLDER).unlink(missing_ok=True)
-            else:
-                text = f"pid {os.getpid()} on {socket.gethostname()}\n"
-                write_whole(folder / _HOLDER, text.encode())
+            (folder / _HOLDER).unlink(missing_ok=True)
+            if not shared:
+                with open(folder / _HOLDER, "x") as file:
+                    file.write(f"pid {os.getpid()} on {socket.gethostname()}\n")
         try:
             yield new
         finally:
@@ -108,3 +113,36 @@ def refuse_link(folder: Path) -> None:
     with suppress(FileNotFoundError, NotADirectoryError):  # another process may just have removed it
         if not stat.S_ISDIR(os.lstat(folder).st_mode):
             raise StoreError(f"{folder}: is not a folder; remove it or choose another -o")
+
+
+def another(where: Path, kind: str, there: Question, here: Question) -> StoreError:
+    """Return the error that a place holds something else."""
+    what = difference(there, here)
+    return StoreError(f"{where}: holds a different {kind}: {what}; choose another -o, or remove it")
+
+
+def difference(there: Question, here: Question) -> str:
+    """Tell what keeps two runs, or two sweeps, from being one: scene, axes and what draws, of each."""
+    before, now = _said(*there[:2]), _said(*here[:2])
+    for key in (*now, *before):
+        if before.get(key) != now.get(key):
+            given = f"{shortened(repr(now[key]))} here" if key in now else "not given here"
+            return f"{key} is {shortened(repr(before.get(key)))} there and {given}"
+    return f"it was drawn with {there[2]}, but this is {here[2]}"
+
+
+def _said(scene: str, axes: str) -> dict[str, Any]:
+    """Keys and values that decide the numbers: of a scene alone but for the number of surfaces."""
+    found = {"sweep": axes or None, **dict(_flat(loads(scene)))}
+    if not axes:
+        found.pop("ensemble.n_surfaces", None)
+        found["ensemble.n_asperities"] = scene_from(scene).n_asperities
+    return found
+
+
+def _flat(table: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{prefix}{key}.")
+        else:
+            yield prefix + key, value

@@ -1,4 +1,4 @@
-"""From a plan to its file: its blocks are drawn, by whoever draws them, and merged."""
+"""The blocks of a plan: drawn by whoever draws them, and merged to its file."""
 
 from collections.abc import Callable, Iterable
 from concurrent.futures import Executor, ThreadPoolExecutor
@@ -9,13 +9,13 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from mcgw.ensemble.results import Labelled
-from mcgw.errors import RunError, StoppedError, StoreError, in_one_line
+from mcgw.errors import RunError, StoppedError, StoreError
 from mcgw.formats.files import State, state_of
-from mcgw.jobs.executors import Signals, drive, heed_signals
+from mcgw.jobs.executors import drive
+from mcgw.machine.process import Signals, heed_signals
 from mcgw.store.ensembles import described, open_results
-from mcgw.store.identity import difference
-from mcgw.store.lock import locked, parts_of
-from mcgw.store.place import check_room, drop_leftovers, finished, put, remove_run, tidy
+from mcgw.store.ownership import difference, locked, parts_of
+from mcgw.store.place import finished, put, remove_run, tidy
 from mcgw.store.run_plan import RECORD, Plan, Span, commit_shard
 
 if TYPE_CHECKING:
@@ -51,59 +51,7 @@ def _drawn(plan: Plan, span: Span, threads: int | None, *go_on: Done) -> Callabl
     return partial(commit_shard, path, plan.identity, span, tables, perf_counter() - started)
 
 
-def make(
-    plan: Plan,
-    progress: Done,
-    executor: Executor | None,
-    threads: int | None,
-    part: tuple[int, int] | None,
-) -> int:
-    """Draw what is missing of a file and make it; or of its blocks a share, for `mcgw.merge` to make it of.
-
-    An executor draws the blocks, or threads of this process: one writes a block while others draw the next.
-    Of a share `part` has its number, from 1, and of how many. Returns how many surfaces are then missing of
-    the whole.
-    """
-    if finished(plan) < plan.total:
-        check_room(plan)
-        if part:
-            tidy(plan.path)
-        with heed_signals() as signals, locked(plan.folder, shared=part is not None) as new:
-            if not (part or new):
-                drop_leftovers(plan.path)
-            if finished(plan) < plan.total:  # no other process was faster
-                in_blocks = executor or part or plan.axes or (plan.folder / RECORD).exists()
-                try:
-                    if not in_blocks and plan.total <= plan.reducers[0].rows > 1:
-                        return _at_once(plan, threads, progress, signals)
-                    return _in_blocks(plan, executor, threads, part, progress, signals)
-                except OSError as error:
-                    raise RunError(
-                        f"{in_one_line(error)}; finished blocks are kept in {plan.folder}; once this is "
-                        "fixed, the same command resumes"
-                    ) from None
-    tidy(plan.path)
-    progress(sum(one.scene.n_surfaces * one.work for one in plan.reducers))
-    return 0
-
-
-def _at_once(plan: Plan, threads: int | None, progress: Done, signals: Signals) -> int:
-    """All surfaces of a scene in this thread, and their file in one step. Only with the lock."""
-
-    def go_on(done: float) -> bool:
-        signals.check("nothing was saved, because the run is one block; the same command starts it again")
-        progress(done)
-        return True
-
-    started = perf_counter()
-    progress(0)
-    tables = plan.draw(Span(0, plan.total), threads, go_on)
-    seconds = perf_counter() - started
-    put(plan, lambda: plan.contents([plan.reducers[0].held([tables])], seconds))
-    return 0
-
-
-def _in_blocks(
+def in_blocks(
     plan: Plan,
     executor: Executor | None,
     threads: int | None,
