@@ -147,8 +147,8 @@ class Labelled:
     attributes: Mapping[str, Any] = field(default_factory=dict)
     drawn: Tables = field(default_factory=dict)
 
-    def in_file(self, attributes: Mapping[str, Any]) -> "Labelled":
-        """Return what a file holds, with its attributes."""
+    def numbered(self) -> "Labelled":
+        """Return it for a file: texts by their numbers, and names of coordinates that are no axes."""
         coordinates = dict(self.coordinates)
         for name, one in coordinates.items():
             if one.values.dtype.kind not in "iuf":  # texts by their numbers, and these in words
@@ -158,8 +158,7 @@ class Labelled:
         others = [name for name, one in coordinates.items() if one.dims != (name,)]
         named = {"coordinates": " ".join(others)} if others else {}  # by which xarray knows them
         scales = {name: one for name, one in coordinates.items() if name not in others}
-        made_of = {f"{GROUP}/{name}": Variable((), values, "", "") for name, values in self.drawn.items()}
-        return Labelled({**self.variables, **made_of}, {**scales, **coordinates}, {**attributes, **named})
+        return Labelled(self.variables, {**scales, **coordinates}, named, self.drawn)
 
 
 def axis(name: str, values: Any) -> Variable:

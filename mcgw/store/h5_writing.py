@@ -29,7 +29,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.ensemble.results import CHUNK_ROWS, Labelled
+from mcgw.ensemble.results import CHUNK_ROWS, GROUP, Labelled, Variable
 
 FILETYPE, BLOCK_TYPE, RUN_TYPE, FORMAT = "mcgw-results", "mcgw-block", "mcgw-run", [4, 0]
 MOST_TEXT = 2**22  # characters of an attribute, such as the scene
@@ -94,7 +94,8 @@ def _fill(
     file: h5py.File, contents: Labelled, of: str, raw: SteadyFile, go_on: Callable[[], None] | None
 ) -> None:
     heads: dict[str, Any] = {}
-    for name, one in {**contents.coordinates, **contents.variables}.items():
+    drawn = {f"{GROUP}/{name}": Variable((), values, "", "") for name, values in contents.drawn.items()}
+    for name, one in {**contents.coordinates, **contents.variables, **drawn}.items():
         n, some = len(one.values), max(PIECE // one.values[:1].nbytes, 1)
         for first in range(0, n, some):
             piece = one.values[first : first + some]

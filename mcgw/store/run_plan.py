@@ -16,7 +16,7 @@ import hashlib
 import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from functools import cached_property, partial
 from itertools import groupby
@@ -206,15 +206,17 @@ class Plan:
 
     def contents(self, held: list[Any], seconds: float) -> Labelled:
         """Return those of the file, of what is held of each group, with how long it took."""
-        asked: Any = self.asked
-        found = asked.answered(held) if self.axes else Ensemble(self.scene, self.sampler, *held)
+        if isinstance(self.asked, Scene):
+            found = Ensemble(self.scene, self.sampler, *held).labelled()
+        else:
+            found = self.asked.answered(held).labelled().numbered()
         about = {**self._about(FILETYPE), "title": self.scene.title, "seed": np.uint64(self.scene.seed)}
         about |= {"versions": versions(), "commit": commit(), "cpu": processor(), "wall_seconds": seconds}
         if self.scene.accuracy:
             from mcgw.sampling.samplers import distance_of  # for those scenes alone
 
             about["accuracy_spent"] = distance_of(self.scene)  # how far from the exact laws it went
-        return found.labelled().in_file(about)
+        return replace(found, attributes={**found.attributes, **about})
 
     def _about(self, filetype: str) -> dict[str, Any]:
         about = {"filetype": filetype, "format": FORMAT, "scene": self.text, "sampler": self.sampler}
