@@ -55,10 +55,9 @@ def drawn_blocks(sampler: Source[_Drawn], first: int, stop: int, size: int) -> I
 def kept(scene: Scene, sums: Sums) -> dict[str, Any]:
     """Return what is kept of a block: its sums, contacts as whole numbers."""
     arrays = dict(sums)
-    if scene.interaction is not None or scene.gas is not None:
+    if more := scene.tables[len(scene.quantities) :]:
         from mcgw.ensemble.at_load import answered  # for those scenes alone
 
-        more = (*scene.other_separations, *scene.of_joint)
         arrays = answered(scene, arrays, more, np.array(scene.separations))
     for name in filter(lambda name: quantity_of(name).counts, scene.quantities):
         arrays[name] = np.rint(arrays[name]).astype(np.int64)
@@ -90,7 +89,7 @@ def seconds_per_surface(scene: Scene, sampler: Source[Any]) -> float:
     return float(np.median(times)) / n
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class Values:
     """Draws the surfaces of one scene, of a fixed number, and keeps of each all its numbers.
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import betainccinv, betaincinv, gammainccinv, gammaincinv, ndtri
 
-from analytic import Hertz, MeasuredHeights, quantity_of
+from analytic import SEPARATIONS, Hertz, MeasuredHeights, quantity_of
 from analytic.arrays import Array
 from mcgw.ensemble.results import Held
 from mcgw.formats.table import Column
@@ -126,7 +126,7 @@ def interval_of(scene: Scene, sums: Held, name: str, level: float) -> tuple[Arra
     mean, m = sums.mean_and_std(name)[0], sums.rows()
     if scene.as_measured:
         return mean, mean
-    if name in scene.other_separations:
+    if name in SEPARATIONS:
         return _of_separation(scene, sums, name, level)
     if quantity_of(name).counts:
         contacts, asperities = np.rint(mean * m), float(scene.n_asperities) * m

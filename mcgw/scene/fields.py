@@ -185,26 +185,25 @@ class Fields(Flat):
     @property
     def tables(self) -> tuple[str, ...]:
         """Names of the tables of an ensemble, which have a number for each surface and separation."""
-        return (*self.quantities, *self.other_separations, *self.of_joint)
+        separations = {} if self.interaction is None else analytic.SEPARATIONS
+        more = separations if self.joint.gas is None else separations | analytic.JOINT
+        back = self.unload_from is not None
+        return (*self.quantities, *(name for name, q in more.items() if back or not q.unloading))
 
     @property
     def of_joint(self) -> tuple[str, ...]:
         """Conductances of a joint other than those of its spots."""
-        named = {} if self.gas is None else analytic.JOINT
-        return tuple(name for name, q in named.items() if not q.unloading or self.unload_from is not None)
+        return tuple(name for name in self.tables if name in analytic.JOINT)
+
+    @property
+    def other_separations(self) -> tuple[str, ...]:
+        """Nominal separations of an ensemble whose asperities press each other down."""
+        return tuple(name for name in self.tables if name in analytic.SEPARATIONS)
 
     @property
     def answers(self) -> tuple[str, ...]:
         """Its answers: sums and conductances of the joint."""
         return (*self.quantities, *self.of_joint)
-
-    @property
-    def other_separations(self) -> tuple[str, ...]:
-        """Nominal separations of an ensemble whose asperities press each other down."""
-        if self.interaction is None:
-            return ()
-        back = () if self.unload_from is None else ("nominal_separation_unloading",)
-        return ("nominal_separation", *back)
 
     @property
     def width(self) -> int:
