@@ -187,10 +187,10 @@ def heed_signals() -> Iterator[Signals]:
 
 
 @cache
-def versions(*, of_draws: bool = False) -> str:
-    """Versions of Python and of the packages; or only of those on which the numbers drawn depend."""
-    known = [] if of_draws else [f"python {platform.python_version()}"]
-    for name in _DRAW if of_draws else _PACKAGES:
+def versions(packages: tuple[str, ...] = _DRAW) -> str:
+    """Versions of packages, by default of those on which the numbers drawn depend."""
+    known = []
+    for name in packages:
         try:
             known.append(f"{name} {version(name)}")
         except PackageNotFoundError:
@@ -199,23 +199,17 @@ def versions(*, of_draws: bool = False) -> str:
 
 
 @cache
-def commit() -> str:
-    """Commit of a source checkout, "unknown" for an installed package."""
-    here = Path(__file__).resolve().parents[2]
-    if not (here / ".git").exists():
-        return "unknown"
-    call = ["git", "-C", str(here), "rev-parse", "HEAD"]
-    try:
-        return subprocess.run(call, capture_output=True, text=True, timeout=5, check=True).stdout.strip()
-    except (OSError, subprocess.SubprocessError):
-        return "unknown"
-
-
-@cache
-def processor() -> str:
-    """Name of the processor and number of its cores."""
+def provenance() -> dict[str, str]:
+    """Return what is needed to repeat a run, besides its scene: versions, commit of a checkout, processor."""
+    here, commit = Path(__file__).resolve().parents[2], "unknown"  # as of an installed package
+    if (here / ".git").exists():
+        call = ["git", "-C", str(here), "rev-parse", "HEAD"]
+        with suppress(OSError, subprocess.SubprocessError):
+            done = subprocess.run(call, capture_output=True, text=True, timeout=5, check=True)
+            commit = done.stdout.strip()
+    cpu = platform.processor() or platform.machine()
     with suppress(OSError):
-        names = re.findall(r"^model name\s*: (.*)", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
-        if names:
-            return f"{names[0].strip()} ({len(names)} cores)"
-    return platform.processor() or platform.machine()
+        cores = re.findall(r"^model name\s*: (.*)", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
+        cpu = f"{cores[0].strip()} ({len(cores)} cores)" if cores else cpu
+    python = f"python {platform.python_version()}"
+    return {"versions": f"{python}, {versions(_PACKAGES)}", "commit": commit, "cpu": cpu}

@@ -13,7 +13,6 @@ from scipy.special import ndtri
 
 from mcgw.ensemble.intervals import CONFIDENCE
 from mcgw.ensemble.simulation import MOST_SURFACES, forecast, surfaces_at_load
-from mcgw.machine.process import kept
 from mcgw.sampling.expected import expected
 from mcgw.scene.ensemble import promise_of
 from mcgw.scene.scene import Scene
@@ -76,7 +75,6 @@ def wants_of(name: str) -> tuple[str, ...]:
     return ("mean", "std", *laws)
 
 
-@kept
 def of_one(scene: Scene, want: str) -> float:
     """Bound of the error from one surface, by exact theory; it falls with the root of their number."""
     h, q = scene.separations[0], scene.quantities[0]

@@ -31,7 +31,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import GROUP, Labelled, Results, Rows, Tables, Variable
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import Expected, check_output, sync, whole_file
-from mcgw.machine.process import commit, processor, versions
+from mcgw.machine.process import provenance, versions
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document, scene_from
 from mcgw.store.h5_reading import look, read_rows, read_tables
@@ -113,7 +113,7 @@ class Plan:
         if not recorded:
             check_output(path)
         self.asked, self.path, self.folder = asked, path, parts_of(path)
-        self.shards_folder, draws = self.folder / "shards", versions(of_draws=True)
+        self.shards_folder, draws = self.folder / "shards", versions()
         if isinstance(asked, Scene):
             document = scene_document(asked)
             self.scene, self.axes, self.text = asked, "", tomli_w.dumps(document)
@@ -211,7 +211,7 @@ class Plan:
         else:
             found = self.asked.answered(held).labelled().numbered()
         about = {**self._about(FILETYPE), "title": self.scene.title, "seed": np.uint64(self.scene.seed)}
-        about |= {"versions": versions(), "commit": commit(), "cpu": processor(), "wall_seconds": seconds}
+        about |= {**provenance(), "wall_seconds": seconds}
         if self.scene.accuracy:
             from mcgw.sampling.samplers import distance_of  # for those scenes alone
 

@@ -15,7 +15,7 @@ from pathlib import Path
 import records
 from timing import parser_of
 
-from mcgw.machine.process import processor
+from mcgw.machine.process import provenance
 
 BENCHES = (
     "bench_analytic",
@@ -37,7 +37,7 @@ PROJECT = Path(__file__).parents[2] / "pyproject.toml"
 def about() -> records.Line:
     """Which version is measured, when and where."""
     version = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]["version"]
-    return {"version": version, "date": datetime.now(UTC).date().isoformat(), "machine": processor()}
+    return {"version": version, "date": datetime.now(UTC).date().isoformat(), "machine": provenance()["cpu"]}
 
 
 def ratios_of(bench: str, rounds: int) -> dict[str, float]:
