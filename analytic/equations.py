@@ -244,7 +244,7 @@ def summit_plasticity_index(surface: Surface, hardness: float, poisson: float = 
     >>> round(summit_plasticity_index(steel, 7e9), 3)
     0.548
     """
-    return 1 / math.sqrt(KogutEtsion(hardness=hardness, poisson=poisson).reduced_on(surface))
+    return 1 / math.sqrt(KogutEtsion(hardness=hardness, poisson=poisson).on(surface).reduced("critical"))
 
 
 def yielding_share(model: Model, h: ArrayLike, hardness: float, poisson: float = POISSON) -> Array:

@@ -20,7 +20,7 @@ from analytic.interaction import Interaction, answer_of, asked
 from analytic.joint import Gap
 from analytic.laws.branch import Branch
 from analytic.laws.film import Film
-from analytic.laws.law import ContactLaw
+from analytic.laws.law import ContactLaw, Hertz
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
 from analytic.quadrature import REACH, fall_of
 from analytic.quantities import Quantity, quantity_of
@@ -143,7 +143,7 @@ class MeanModel:
             if q.base != "load":
                 raise ValueError(f"quantity = {quantity!r}: its slope is not known; give 'load_unloading'")
             return self.surface.sigma * self._mean(quantity_of("load_slope_unloading"), h)
-        hertz = self.ways.law.hertz and q.exponent >= 1
+        hertz = type(self.ways.law) is Hertz and q.exponent >= 1
         if hertz or isinstance(self.heights, MeasuredHeights):  # no asperity jumps
             return self._mean(q, h, slope=True)
         if q.base == "contacts":
@@ -223,7 +223,7 @@ class MeanModel:
     @cached_property
     def ways(self) -> Branch:
         """Contact law, loading history and film, in reduced units."""
-        law = ContactLaw() if self.law is None else self.law.on(self.surface)
+        law = Hertz() if self.law is None else self.law.on(self.surface)
         return Branch(law, self.unload_from, None if self.film is None else self.film.on(self.surface))
 
     def _rule(

@@ -16,20 +16,16 @@ from analytic.surface import Surface
 class _Adhesive(ContactLaw):
     """A law with a work of adhesion, or D, the stretch of an asperity of modulus E* that breaks it off."""
 
-    of_radius: ClassVar[tuple[str, float]] = ("pull_off", 1 / 3)
-    in_si: ClassVar[tuple[str, str]] = ("work", "a work of adhesion in J/m^2 or a stretch over sigma")
+    of_radius: ClassVar[dict[str, float]] = {"pull_off": 1 / 3}
+    in_si = "work", "one of them, a work of adhesion in J/m^2 or a stretch over sigma"
 
     work: float | None = None
     pull_off: float | None = None
 
-    def __post_init__(self) -> None:
-        self.check_constants()
-
-    def reduced_on(self, surface: Surface) -> float:
-        """D, over sigma."""
-        assert self.work is not None
-        stretch: float = 0.75 * (math.pi**2 * self.work**2 * surface.radius / surface.E_star**2) ** (1 / 3)
-        return stretch / surface.sigma
+    def reduced_on(self, surface: Surface, value: float) -> dict[str, float]:
+        """Return D, over sigma."""
+        stretch: float = 0.75 * (math.pi**2 * value**2 * surface.radius / surface.E_star**2) ** (1 / 3)
+        return {"pull_off": stretch / surface.sigma}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,11 +58,11 @@ class DerjaguinMullerToporov(_Adhesive):
     0.327734
     """
 
-    name: ClassVar[str] = "derjaguin-muller-toporov"
+    name = "derjaguin-muller-toporov"
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Return Hertz's load minus a constant: adhesion does not depend on the modulus."""
-        return super().load(piece, y, e) - 12 * (self.reduced / 3) ** 1.5
+        return super().load(piece, y, e) - 12 * (self.reduced("pull_off") / 3) ** 1.5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,20 +105,20 @@ class JohnsonKendallRoberts(_Adhesive):
     array([-0.544331,  0.542015])
     """
 
-    name: ClassVar[str] = "johnson-kendall-roberts"
-    elastic: ClassVar[bool] = False
-    stiff: ClassVar[bool] = False
+    name = "johnson-kendall-roberts"
+    elastic = False
+    stiff = False
     pulled: ClassVar[bool] = False  # true of the law of contacts that formed and are pulled
 
     @property
     def finest(self) -> float:
         """The formulas end where contacts break off."""
-        return float(self.reduced)
+        return float(self.reduced("pull_off"))
 
     def stretch(self, e: Array) -> Array:
         """Return D_e, in the shape of `e`; infinite without stiffness."""
         with np.errstate(divide="ignore"):
-            return np.asarray(self.reduced * np.asarray(e, dtype=np.float64) ** (-2 / 3))
+            return np.asarray(self.reduced("pull_off") * np.asarray(e, dtype=np.float64) ** (-2 / 3))
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Return the load of a contact, in the shape of `y` and `e`."""

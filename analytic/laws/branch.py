@@ -9,15 +9,16 @@ several intervals if it falls faster than heights rise, as that of yielding does
 """
 
 from collections.abc import Callable, Iterable, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.arrays import Array, Ints, Marks
+from analytic.arrays import Array, Ints, hold
 from analytic.gradings import Grading, Homogeneous
-from analytic.laws.film import SpotConductance
+from analytic.laws.film import Film
 from analytic.laws.law import ContactLaw, piece_of, slope_in_root
 from analytic.quantities import quantity_of
 from analytic.resolution import stretches
@@ -37,12 +38,6 @@ class Regimes:
     high: Array
     piece: Ints  # its number
 
-    @property
-    def goes_on(self) -> Marks:
-        """Whether each goes on where the one before ends; shape (intervals + 1,), false at both ends."""
-        on = (self.low[1:] <= self.high[:-1]) & (np.diff(self.separation) == 0)
-        return np.concatenate([[False], on, [False]]) if self.low.size else np.zeros(1, dtype=bool)
-
 
 @dataclass(frozen=True)
 class Branch:
@@ -53,7 +48,7 @@ class Branch:
 
     law: ContactLaw  # in reduced units
     unload_from: float | None = None  # lowest separation that an unloaded surface has reached, d/sigma
-    conductance: SpotConductance | None = None  # of "conductance_si"
+    film: Film | None = None  # of "conductance_si", on the surface
     ratios: Array | None = None  # of the radii of summits to that of the surface, along the last axis of all
 
     def of(self, quantity: str) -> Self:
@@ -63,7 +58,7 @@ class Branch:
         is not is a KeyError; unloading or conductance that is not known, a ValueError.
         """
         q = quantity_of(quantity)
-        if q.base == "conductance_si" and self.conductance is None:
+        if q.base == "conductance_si" and self.film is None:
             raise ValueError(f"quantity = {quantity!r}: give a film, or at least a resistivity")
         if not q.unloading or self.law.elastic:
             return self.loading
@@ -83,7 +78,7 @@ class Branch:
     @property
     def loading(self) -> Self:
         """The loading branch."""
-        return self if self.unload_from is None else replace(self, unload_from=None)
+        return replace(self, unload_from=None)
 
     def among(self, quantities: Iterable[str]) -> tuple[Self, ...]:
         """Return the branches of some quantities, each once."""
@@ -91,7 +86,7 @@ class Branch:
 
     def with_radii(self, ratios: Array | None) -> Self:
         """Return that of summits whose radii are these multiples of the surface's, each in its own units."""
-        return self if ratios is None else replace(self, ratios=ratios)
+        return replace(self, ratios=ratios)
 
     def of_some(self, which: NDArray[Any]) -> Self:
         """Return that of selected summits, by a mask, or by numbers that begin again beyond the last."""
@@ -104,7 +99,7 @@ class Branch:
     @property
     def finest(self) -> float:
         """How far above first touch formulas are analytic."""
-        return min(self.law.finest, self.conductance.finest) if self.conductance else self.law.finest
+        return min(self.law.finest, self.film.finest) if self.film else self.law.finest
 
     def terms(
         self, quantities: Sequence[str], h: ArrayLike, s: ArrayLike, e: ArrayLike, *, slope: bool = False
@@ -147,7 +142,7 @@ class Branch:
             "stiffness": lambda y: law.stiffness(piece, y, e),
             "contacts": lambda y: np.ones(shape),  # noqa: ARG005 - whatever the penetration
             "conductance": lambda y: law.radius(piece, y, e),
-            "conductance_si": lambda y: self.conductance(law.radius(piece, y, e), self.ratios),  # type: ignore[misc]
+            "conductance_si": lambda y: self.film.conductance(law.radius(piece, y, e), self.ratios),  # type: ignore[union-attr]
             "load_slope": lambda y: slope_in_root(lambda v: law.load(piece, v, e), y) * (2 / 3),
             "yielded": lambda y: np.full(shape, float(piece > 0)),  # noqa: ARG005
         }
@@ -165,7 +160,10 @@ class Branch:
 
     def _law(self, deepest: Array | None = None) -> ContactLaw:
         """Law of contacts that are closer than ever before, or on unloading have been this deep."""
-        law = self.law if self.ratios is None else self.law.with_radii(self.ratios)
+        law = self.law
+        if self.ratios is not None:  # each in units of its own radius
+            law, of_radius = copy(law), law.of_radius.items()
+            hold(law, **{name: getattr(law, name) * self.ratios**power for name, power in of_radius})
         return law if self.unload_from is None or deepest is None else law.unloading(np.maximum(deepest, 0.0))
 
     def lowest(self, h: Any) -> Any:
@@ -187,7 +185,6 @@ class Branch:
 
     def pieces(self, h: Array, above: Array, e: Array) -> Ints:
         """Which formula holds at heights `above` the separations, -1 without contact."""
-        above, h, e = np.broadcast_arrays(above, h, e)
         return np.where(self.left(h, above, e) > 0, piece_of(self._law(), self.deepest(h, above), e), -1)
 
     def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
@@ -199,6 +196,29 @@ class Branch:
         that is not resolved by 4096 pieces is a ValueError.
         """
         h = np.asarray(separations, dtype=np.float64)
+        every, start = np.arange(h.size), np.maximum(np.broadcast_to(self.lowest(h), h.shape), low)
+        which, edge = self._crossings(grading, h, low, high)
+        which = np.concatenate([every, every, which])
+        edge = np.concatenate([start, np.full(h.size, high), edge])
+        anchors = np.unique([*start, *h, *grading.breaks, high])
+        nearest = anchors[np.searchsorted((anchors[1:] + anchors[:-1]) / 2, edge)]
+        same = 8 * np.spacing(np.maximum(np.abs(edge), np.abs(h[which])))  # found from ``s - h``
+        edge = np.maximum(np.where(np.abs(nearest - edge) <= same, nearest, edge), start[which])
+        order = np.lexsort((edge, which))
+        which, edge, same = which[order], edge[order], same[order]
+        apart = np.append(True, (np.diff(which) > 0) | (np.diff(edge) > same[1:]))
+        which, edge = which[apart], edge[apart]
+        inside = np.flatnonzero(which[1:] == which[:-1])
+        which, begin, end = which[inside], edge[inside], edge[inside + 1]
+        middle = begin + (end - begin) / 2
+        piece = self.of_some(which).pieces(h[which], middle - h[which], grading(middle))
+        first = np.append(True, (np.diff(which) > 0) | (np.diff(piece) != 0))[: which.size]
+        last, contact = np.roll(first, -1), piece[first] >= 0
+        found = which[first], begin[first], end[last], piece[first]
+        return Regimes(*(each[contact] for each in found))
+
+    def _crossings(self, grading: Grading, h: Array, low: float, high: float) -> tuple[Ints, Array]:
+        """Return heights at which a bound is crossed, after the numbers of their separations."""
 
         def beyond(s: Array, which: Ints) -> Array:
             """How far heights are beyond each bound, at separations by their numbers: shape (bounds, ...)."""
@@ -210,32 +230,13 @@ class Branch:
                     found.append(some.left(x, s - x, e))
                 return np.reshape(found, (len(found), *deepest.shape))
 
-        every, start = np.arange(h.size), np.maximum(np.broadcast_to(self.lowest(h), h.shape), low)
         s = np.array([low, high])
         if not isinstance(grading, Homogeneous):
             s = stretches(beyond, grading, low, high, 1 if self.ratios is None else self.ratios.size)
-        held = beyond(s, every[:, None]) >= 0
+        held = beyond(s, np.arange(h.size)[:, None]) >= 0
         bound, which, i = np.nonzero(held[..., 1:] != held[..., :-1])
 
         def excess(x: Array, n: Ints) -> Array:
             return np.asarray(beyond(x, which[n])[bound[n], np.arange(n.size)])
 
-        edge = sign_changes(excess, s[i], s[i + 1], np.abs(h[which]))
-        which = np.concatenate([every, every, which])
-        edge = np.concatenate([start, np.full(h.size, high), edge])
-        anchors = np.unique([*start, *h, *grading.breaks, high])
-        nearest = anchors[np.searchsorted((anchors[1:] + anchors[:-1]) / 2, edge)]
-        same = 8 * np.spacing(np.maximum(np.abs(edge), np.abs(h[which])))  # found from ``s - h``
-        edge = np.maximum(np.where(np.abs(nearest - edge) <= same, nearest, edge), start[which])
-        order = np.lexsort((edge, which))
-        which, edge, same = which[order], edge[order], same[order]
-        apart = (np.diff(which) > 0) | (np.diff(edge) > same[1:])
-        which, edge = which[np.append(True, apart)], edge[np.append(True, apart)]
-        inside = np.flatnonzero(which[1:] == which[:-1])
-        which, begin, end = which[inside], edge[inside], edge[inside + 1]
-        middle = begin + (end - begin) / 2
-        piece = self.of_some(which).pieces(h[which], middle - h[which], grading(middle))
-        first = np.append(True, (np.diff(which) > 0) | (np.diff(piece) != 0))[: which.size]
-        last, contact = np.roll(first, -1), piece[first] >= 0
-        found = which[first], begin[first], end[last], piece[first]
-        return Regimes(*(each[contact] for each in found))
+        return which, sign_changes(excess, s[i], s[i + 1], np.abs(h[which]))

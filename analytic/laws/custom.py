@@ -1,20 +1,20 @@
 """Your own contact law: formulas of its pieces, and the series by which a file stores them."""
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from analytic.arrays import Array, hold
 from analytic.gradings import Custom
 from analytic.laws.elastic_plastic import ElasticPlastic
-from analytic.laws.law import NEXT_TO_0
+from analytic.laws.law import NEXT_TO_0, STEP
 from analytic.piecewise import PiecewiseSeries
 from analytic.resolution import resolved
 
 Formula = Callable[[Any], Any]
-_PROBE = 1e-30j  # slopes are taken by a step into the complex plane
 
 
 class RootSeries(PiecewiseSeries):
@@ -28,19 +28,15 @@ def _resolved_in_root(name: str, formula: Formula, low: float, high: float) -> R
         u = np.where(np.abs(t) < NEXT_TO_0, NEXT_TO_0, t) if low < 0 else np.exp(t)
         return np.asarray(formula(u) / (u * u))
 
-    try:
+    with suppress(ValueError):
         found = resolved(Custom(over_square), *((low, high) if low < 0 else np.log([low, high]).tolist()))
-    except ValueError:
-        kinks = True
-    else:
-        kinks = bool(found.kinks)
-    if kinks:
-        first = "; where it begins, write u**3 for (u*u)**1.5: it is also evaluated at -u" if low < 0 else ""
-        raise ValueError(
-            f"{name}: it is not smooth between x = {low * abs(low):g} and {high * high:g}: give the "
-            f"penetration of each jump and kink in limits{first}"
-        )
-    return RootSeries(found.edges, found.coefficients)
+        if not found.kinks:
+            return RootSeries(found.edges, found.coefficients)
+    first = "; where it begins, write u**3 for (u*u)**1.5: it is also evaluated at -u" if low < 0 else ""
+    raise ValueError(
+        f"{name}: it is not smooth between x = {low * abs(low):g} and {high * high:g}: give the "
+        f"penetration of each jump and kink in limits{first}"
+    )
 
 
 @dataclass(frozen=True)
@@ -86,8 +82,7 @@ class CustomLaw(ElasticPlastic):
     0.022360679775
     """
 
-    name: ClassVar[str] = "custom"
-    _begins_as_hertz: ClassVar[bool] = False
+    name = "custom"
 
     load_of: tuple[Formula, ...]
     area_of: tuple[Formula, ...]
@@ -104,31 +99,23 @@ class CustomLaw(ElasticPlastic):
     ) -> None:
         edges = tuple(map(float, limits))
         hold(self, load_of=tuple(load), area_of=tuple(area), edges=edges, critical=float(critical))
-        hold(self, checked=checked)
+        is_data = all(isinstance(formula, RootSeries) for formula in (*load, *area))
+        hold(self, checked=checked, is_data=is_data)
         super().__post_init__()
-        rising = [0.0, *self.edges]
+        rising = [0.0, *edges]
         if not (np.all(np.isfinite(rising)) and np.all(np.diff(rising) > 0)):
-            raise ValueError(f"limits = {list(self.edges)}: give numbers > 0 that increase")
-        for name, formulas in self._formulas().items():
+            raise ValueError(f"limits = {list(edges)}: give numbers > 0 that increase")
+        for name, formulas in (("load", self.load_of), ("area", self.area_of)):
             if len(formulas) != len(rising):
                 raise ValueError(
                     f"{name}: give {len(rising)} formulas, one more than limits, not {len(formulas)}"
                 )
             for piece, formula in enumerate(formulas):
-                if not isinstance(formula, RootSeries):
-                    self._check(f"{name}[{piece}]", formula, piece)
-
-    def _formulas(self) -> dict[str, tuple[Formula, ...]]:
-        return {"load": self.load_of, "area": self.area_of}
+                self._check(name, formula, piece)
 
     def _value(self, what: str, piece: int, u: Any, e: Array) -> Any:
-        formula = self._formulas()[what][piece]
+        formula = getattr(self, f"{what}_of")[piece]
         return u * u * formula(np.log(u) if piece else u) if isinstance(formula, RootSeries) else formula(u)
-
-    @property
-    def is_data(self) -> bool:
-        """Whether the law consists of series, which can be stored in a file."""
-        return all(isinstance(formula, RootSeries) for formula in (*self.load_of, *self.area_of))
 
     def as_data(self, deepest: float) -> "CustomLaw":
         """Return the law as plain numbers: `RootSeries` in place of formulas, up to a penetration.
@@ -155,7 +142,7 @@ class CustomLaw(ElasticPlastic):
         pairs = list(zip([-ends[0], *ends[:-1]], ends, strict=True))
         load, area = (
             [_resolved_in_root(f"{name}[{k}]", formulas[k], *pair) for k, pair in enumerate(pairs)]
-            for name, formulas in self._formulas().items()
+            for name, formulas in (("load", self.load_of), ("area", self.area_of))
         )
         return CustomLaw(load, area, kept, self.critical, self.checked)
 
@@ -173,13 +160,17 @@ class CustomLaw(ElasticPlastic):
 
     def _check(self, name: str, formula: Formula, piece: int) -> None:
         """Try a formula where its piece begins, and that of the first piece on both sides of first touch."""
+        if isinstance(formula, RootSeries):
+            first, last = formula.edges[0], formula.edges[-1]
+            if piece == 0 and first != -last:
+                raise ValueError(f"{name}: the first piece reaches from {first:g} to {last:g}, not around 0")
+            return
         start = self.edges[piece - 1] if piece else min(self.edges, default=1.0)
         u = np.sqrt(start) * (np.array([1.1]) if piece else np.array([-0.5, 0.5]))
-        with np.errstate(all="ignore"):
-            try:
-                good = all(np.all(np.isfinite(formula(v))) for v in (u, u + _PROBE * np.abs(u)))
-            except TypeError:
-                good = False
+        good = False
+        with np.errstate(all="ignore"), suppress(TypeError):
+            good = all(np.all(np.isfinite(formula(v))) for v in (u, u + 1j * STEP * np.abs(u)))
         if not good:
             also = ", also negative ones," if piece == 0 else ""
+            name += f"[{piece}]"
             raise ValueError(f"{name}: it must give finite numbers for arrays{also} of real and complex u")

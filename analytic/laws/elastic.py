@@ -9,6 +9,7 @@ from scipy.special import log1p
 
 from analytic.arrays import Array
 from analytic.laws.law import ContactLaw
+from analytic.surface import check_positive
 
 
 @dataclass(frozen=True)
@@ -51,10 +52,10 @@ class PowerLawGraded(ContactLaw):
     1.141408652077
     """
 
-    name: ClassVar[str] = "power-law-graded"
-    root: ClassVar[bool] = False
-    of_radius: ClassVar[tuple[str, float]] = ("reduced_c0", -0.5)
-    in_si: ClassVar[tuple[str, str]] = ("c0", "a depth in m or over sqrt(R sigma)")
+    name = "power-law-graded"
+    root = False
+    of_radius: ClassVar[dict[str, float]] = {"reduced_c0": -0.5}
+    in_si = "c0", "one of them, a depth in m or over sqrt(R sigma)"
 
     k: float
     c0: float | None = None
@@ -64,7 +65,7 @@ class PowerLawGraded(ContactLaw):
     def __post_init__(self) -> None:
         if not 0 <= self.k < 1:
             raise ValueError(f"k = {self.k!r}: give an exponent of the depth from 0 to below 1")
-        self.check_constants()
+        super().__post_init__()
 
     @property
     def H(self) -> float:  # noqa: N802
@@ -78,7 +79,7 @@ class PowerLawGraded(ContactLaw):
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Return the load of a contact, in the shape of `y` and `e`."""
         factor = 3 * (1 + self.k) ** ((self.k - 1) / 2) / (3 + self.k)
-        return factor * self.H / self.reduced**self.k * e * y ** (3 + self.k)
+        return factor * self.H / self.reduced("reduced_c0") ** self.k * e * y ** (3 + self.k)
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
         """Return the radius of a contact; its square is the area over pi R sigma."""
@@ -86,7 +87,7 @@ class PowerLawGraded(ContactLaw):
 
     def stiffness(self, piece: int, y: Array, e: Array) -> Array:
         """Return the stiffness of a spot over 2 E* sqrt(R sigma)."""
-        factor = (1 + self.k) ** ((self.k - 1) / 2) * self.H / self.reduced**self.k
+        factor = (1 + self.k) ** ((self.k - 1) / 2) * self.H / self.reduced("reduced_c0") ** self.k
         return np.asarray(factor * e * y ** (1 + self.k))
 
 
@@ -133,9 +134,9 @@ class Coated(ContactLaw):
     8.0
     """
 
-    name: ClassVar[str] = "coated"
-    of_radius: ClassVar[tuple[str, float]] = ("reduced_thickness", -0.5)
-    in_si: ClassVar[tuple[str, str]] = ("thickness", "in m or over sqrt(R sigma)")
+    name = "coated"
+    of_radius: ClassVar[dict[str, float]] = {"reduced_thickness": -0.5}
+    in_si = "thickness", "one of them, in m or over sqrt(R sigma)"
 
     thickness: float | None = None
     ratio: float
@@ -143,24 +144,26 @@ class Coated(ContactLaw):
     reduced_thickness: float | None = None
 
     def __post_init__(self) -> None:
-        self.check_constants("ratio")
+        super().__post_init__()
+        check_positive("", ratio=self.ratio)
 
     @property
     def finest(self) -> float:
         """How far above first touch the formulas are analytic: arctan(a/t) up to ``|a|`` = t."""
-        return float(self.reduced) ** 2
+        return float(self.reduced("reduced_thickness")) ** 2
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Return the load of a contact, in the shape of `y` and `e`, as an integral of its stiffness."""
-        w, nu = np.asarray(y) / self.reduced, self.poisson
+        t, nu = self.reduced("reduced_thickness"), self.poisson
+        w = np.asarray(y) / t
         z, log = w * w, log1p(w * w)
         atan = w**3 / 3 * (pi / 2 - np.arctan(w)) + (z - log) / 6
         integral = 2 / pi * atan + ((1 - 2 * nu) * ((1 + z) * log - z) - (z - log)) / (4 * pi * (1 - nu))
-        return e * (y * y * y + 3 * (self.ratio - 1) * self.reduced**3 * integral)
+        return e * (y * y * y + 3 * (self.ratio - 1) * t**3 * integral)
 
     def stiffness(self, piece: int, y: Array, e: Array) -> Array:
         """Return the stiffness of a spot over 2 E* sqrt(R sigma)."""
-        w, nu = np.asarray(y) / self.reduced, self.poisson
+        w, nu = np.asarray(y) / self.reduced("reduced_thickness"), self.poisson
         z = w * w
         mixed = (1 - 2 * nu) * log1p(z) / np.where(w == 0, 1.0, w) - w / (1 + z)
         share = 1 - 2 / pi * np.arctan(w) + mixed / (2 * pi * (1 - nu))

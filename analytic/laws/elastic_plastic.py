@@ -8,8 +8,8 @@ idea of Brake (2012), whose own formulas are not these.
 
 import math
 from collections.abc import Callable
-from dataclasses import KW_ONLY, dataclass
-from itertools import chain, pairwise
+from dataclasses import dataclass
+from functools import partial
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -38,26 +38,23 @@ class Piece(NamedTuple):
         formula = getattr(self, what)
         return formula(law, u, e) if callable(formula) else formula[0] * u ** (2 * formula[1])
 
-    def bridge_to(self, right: "Piece") -> "Piece":
-        """Return the piece that leads on to another one."""
+    def bridge_to(self, right: "Piece", what: str, law: Any, u: Any, e: Any) -> Any:
+        """Return the same on the way to another piece: a cubic in the penetration."""
         start, width = right.start, (BRIDGE - 1) * right.start
-
-        def cubic(what: str) -> Formula:
-            def formula(law: Any, u: Any, e: Any) -> Any:
-                first, last = np.sqrt(start), np.sqrt(start + width)
-                begins = self.value(what, law, first, e)
-                rise = right.value(what, law, last, e) - begins
-                at_first = width * slope_in_root(lambda u: self.value(what, law, u, e), first) - rise
-                at_last = rise - width * slope_in_root(lambda u: right.value(what, law, u, e), last)
-                t = (u * u - start) / width
-                return begins + t * rise + t * (1 - t) * ((1 - t) * at_first + t * at_last)
-
-            return formula
-
-        return Piece(start, cubic("load"), cubic("area"))
+        first, last = np.sqrt(start), np.sqrt(start + width)
+        left_at, right_at = (partial(piece.value, what, law, e=e) for piece in (self, right))
+        begins = left_at(first)
+        rise = right_at(last) - begins
+        at_first = width * slope_in_root(left_at, first) - rise
+        at_last = rise - width * slope_in_root(right_at, last)
+        t = (u * u - start) / width
+        return begins + t * rise + t * (1 - t) * ((1 - t) * at_first + t * at_last)
 
 
-@dataclass(frozen=True)
+HERTZ = Piece(0.0, load=(1.0, 1.5), area=(1.0, 1.0))
+
+
+@dataclass(frozen=True, kw_only=True)
 class ElasticPlastic(ContactLaw):
     """A law in ``x = delta/delta_c``: Hertz's, then the pieces of a fit.
 
@@ -65,53 +62,34 @@ class ElasticPlastic(ContactLaw):
     depend on its height.
     """
 
-    _: KW_ONLY
     critical: float | None = None  # penetration over sigma of an asperity of modulus E*
 
-    elastic: ClassVar[bool] = False
-    yields: ClassVar[bool] = True
-    of_radius: ClassVar[tuple[str, float]] = ("critical", 1.0)
-    _fits: ClassVar[tuple[Piece, ...]] = ()
-    _begins_as_hertz: ClassVar[bool] = True
+    elastic = False
+    yields = True
+    of_radius: ClassVar[dict[str, float]] = {"critical": 1.0}
+    _fits: ClassVar[tuple[Piece, ...]] = ()  # beyond Hertz's law, if that holds where contact begins
 
     def __post_init__(self) -> None:
-        self.check_constants()
+        super().__post_init__()
         bridge = getattr(self, "bridge", None)
         if bridge not in (None, "hermite"):
             raise ValueError(f"bridge = {bridge!r}: give 'hermite', or leave it out")
 
     @property
-    def yield_factor(self) -> float:
-        """The greatest contact pressure at the onset of yield over the hardness, or the yield strength."""
-        raise NotImplementedError
-
-    def _critical_at(self, strain: float, surface: Surface) -> float:
-        """delta_c over sigma, of an asperity of so many times less hardness, or strength, than modulus."""
-        root = math.pi * self.yield_factor * strain / 2
-        return root * root * surface.radius / surface.sigma  # inf where a power would raise
-
-    @property
-    def _pieces(self) -> tuple[Piece, ...]:
-        """All of them: Hertz's law first, then fits, or bridges and fits in turn."""
-        fits = (Piece(0.0, load=(1.0, 1.5), area=(1.0, 1.0)), *self._fits)
-        if not getattr(self, "bridge", None):
-            return fits
-        pairs = [(a.bridge_to(b), b._replace(start=BRIDGE * b.start)) for a, b in pairwise(fits)]
-        return (fits[0], *chain.from_iterable(pairs))
-
-    @property
     def edges(self) -> tuple[float, ...]:
         """Penetrations over the critical one at which pieces from 1 on begin."""
-        return tuple(piece.start for piece in self._pieces[1:])
+        ends = (1.0, BRIDGE) if getattr(self, "bridge", None) else (1.0,)
+        return tuple(fit.start * end for fit in self._fits for end in ends)
 
     def delta_c(self, e: Array) -> Array:
         """Critical penetration, infinite where there is no stiffness; in the shape of `e`."""
         with np.errstate(divide="ignore", over="ignore"):
-            return np.asarray(self.reduced / np.square(np.asarray(e, dtype=np.float64)))
+            return np.asarray(self.reduced("critical") / np.square(np.asarray(e, dtype=np.float64)))
 
     def u(self, y: Any, e: Array) -> Any:
         """``sqrt(delta/delta_c)``; 1 where no stiffness is: formulas beyond yield mean nothing there."""
-        return np.where(np.asarray(e) > 0, y * e / np.sqrt(self.reduced), 1.0)
+        u = y * e / np.sqrt(self.reduced("critical"))
+        return np.where(np.asarray(e) > 0, np.where(np.abs(u) < NEXT_TO_0, NEXT_TO_0, u), 1.0)
 
     def limits(self, e: Array) -> Array:
         """Penetrations at which the next piece begins, increasing; shape (pieces - 1, *e.shape)."""
@@ -126,30 +104,44 @@ class ElasticPlastic(ContactLaw):
         return super().radius(piece, y, e) * np.sqrt(self._over_hertz("area", piece, y, e))
 
     def _over_hertz(self, what: str, piece: int, y: Any, e: Array) -> Any:
-        if piece == 0 and self._begins_as_hertz:
+        if piece == 0 and self._fits:
             return 1.0
         u = self.u(y, e)
-        if piece == 0:
-            u = np.where(np.abs(u) < NEXT_TO_0, NEXT_TO_0, u)
-        return self._value(what, piece, u, e) / (u * u * u if what == "load" else u * u)
+        value = self._value(what, piece, u, np.where(np.asarray(e) > 0, e, 1.0))
+        return value / (u * u * u if what == "load" else u * u)
 
     def _value(self, what: str, piece: int, u: Any, e: Array) -> Any:
-        return self._pieces[piece].value(what, self, u, np.where(np.asarray(e) > 0, e, 1.0))
+        """Load or area of a piece over that at delta_c by Hertz's law."""
+        step = 2 if getattr(self, "bridge", None) else 1  # bridges lie between fits
+        left, right = ((HERTZ, *self._fits)[number // step] for number in (piece, piece + step - 1))
+        if left is right:
+            return left.value(what, self, u, e)
+        return left.bridge_to(right, what, self, u, e)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class FromHardness(ElasticPlastic):
     """A law that yields at ``delta_c = (pi K H/(2 E*))^2 R``, where the contact pressure reaches K H."""
 
-    _: KW_ONLY
     hardness: float | None = None  # H of the softer body, Pa; or `critical`
 
-    in_si: ClassVar[tuple[str, str]] = ("hardness", "a hardness in Pa or a critical penetration over sigma")
+    in_si = "hardness", "one of them, a hardness in Pa or a critical penetration over sigma"
 
-    def reduced_on(self, surface: Surface) -> float:
-        """delta_c of an asperity of modulus E*, over sigma."""
-        assert self.hardness is not None
-        return self._critical_at(self.hardness / surface.E_star, surface)
+    @property
+    def yield_factor(self) -> float:
+        """K, the greatest contact pressure at the onset of yield over the hardness."""
+        poisson = getattr(self, "poisson", None)
+        return 0.6 if poisson is None else 0.454 + 0.41 * poisson
+
+    def reduced_on(self, surface: Surface, value: float) -> dict[str, float]:
+        """Return delta_c of an asperity of modulus E*, over sigma."""
+        return {"critical": yields_at(surface, self.yield_factor, value)}
+
+
+def yields_at(surface: Surface, factor: float, strength: float) -> float:
+    """Penetration over sigma at which the greatest pressure by Hertz's law is a factor times a strength."""
+    root = math.pi * factor * (strength / surface.E_star) / 2
+    return root * root * surface.radius / surface.sigma  # inf where a power would raise
 
 
 class EtsionKligermanKadin(ContactLaw):
@@ -179,22 +171,18 @@ class EtsionKligermanKadin(ContactLaw):
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Return the load of a contact."""
-        if piece == 0:
-            return super().load(piece, y, e)
-        share = self._share(y, e) ** (1.5 * self._x(e) ** -0.0331)
-        return self.loading.load(piece, np.sqrt(self.deepest), e) * share
+        return super().load(0, y, e) if piece == 0 else self._left("load", 1.5, -0.0331, piece, y, e)
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
         """Return the radius of a contact; its square is the area over pi R sigma."""
-        if piece == 0:
-            return super().radius(piece, y, e)
-        share = self._share(y, e) ** (self._x(e) ** -0.12 / 2)
-        return self.loading.radius(piece, np.sqrt(self.deepest), e) * share
+        return super().radius(0, y, e) if piece == 0 else self._left("radius", 0.5, -0.12, piece, y, e)
 
     def _x(self, e: Array) -> Any:
         """Deepest penetration over the critical one."""
         return np.square(self.loading.u(np.sqrt(self.deepest), e))
 
-    def _share(self, y: Any, e: Array) -> Any:
-        """How much is left of the penetration that springs back."""
-        return y * y / (self.deepest - self.residual(e))
+    def _left(self, what: str, power: float, fall: float, piece: int, y: Any, e: Array) -> Any:
+        """Return what is left of that at the deepest penetration: a power of the share that springs back."""
+        share = y * y / (self.deepest - self.residual(e))
+        most = getattr(self.loading, what)(piece, np.sqrt(self.deepest), e)
+        return most * share ** (power * self._x(e) ** fall)

@@ -2,12 +2,12 @@
 # ruff: noqa: ARG001, ARG005 - formulas of pieces take the same arguments
 
 import math
-from dataclasses import KW_ONLY, dataclass, replace
-from typing import Any, ClassVar, Literal, Self
+from dataclasses import KW_ONLY, dataclass
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from analytic.laws.elastic_plastic import ElasticPlastic, EtsionKligermanKadin, FromHardness, Piece
+from analytic.laws.elastic_plastic import ElasticPlastic, EtsionKligermanKadin, FromHardness, Piece, yields_at
 from analytic.surface import Surface
 
 _FIRST_YIELD = 0.4  # k of Zhao, Maietta and Chang: mean pressure at first yield over hardness
@@ -65,18 +65,13 @@ class ChangEtsionBogy(FromHardness):
     array([0.0125])
     """
 
-    name: ClassVar[str] = "chang-etsion-bogy"
+    name = "chang-etsion-bogy"
     _fits: ClassVar = (
         Piece(1.0, load=lambda law, u, e: 3 * u * u - 1.5, area=lambda law, u, e: 2 * u * u - 1),
     )
 
     poisson: float | None = None
     bridge: Literal["hermite"] | None = None
-
-    @property
-    def yield_factor(self) -> float:
-        """K, the greatest contact pressure at the onset of yield over the hardness."""
-        return 0.6 if self.poisson is None else 0.454 + 0.41 * self.poisson
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,7 +110,7 @@ class ZhaoMaiettaChang(FromHardness):
     array([0.05, 2.7 ])
     """
 
-    name: ClassVar[str] = "zhao-maietta-chang"
+    name = "zhao-maietta-chang"
     _fits: ClassVar = (
         Piece(1.0, load=_zhao_load, area=_zhao_area),
         Piece(_PLASTIC, load=(2 / _FIRST_YIELD, 1.0), area=(2.0, 1.0)),
@@ -172,7 +167,7 @@ class KogutEtsion(FromHardness):
     array([0.05, 0.3 , 5.5 ])
     """
 
-    name: ClassVar[str] = "kogut-etsion"
+    name = "kogut-etsion"
     _fits: ClassVar = (
         Piece(1.0, load=(1.03, 1.425), area=(0.93, 1.136)),
         Piece(6.0, load=(1.40, 1.263), area=(0.94, 1.146)),
@@ -181,11 +176,6 @@ class KogutEtsion(FromHardness):
 
     poisson: float = 0.3
     bridge: Literal["hermite"] | None = None
-
-    @property
-    def yield_factor(self) -> float:
-        """K, the greatest contact pressure at the onset of yield over the hardness."""
-        return 0.454 + 0.41 * self.poisson
 
     def unloading(self, deepest: Any) -> EtsionKligermanKadin:
         """Return the law of Etsion, Kligerman and Kadin; with a bridge, from the bridged load."""
@@ -253,7 +243,9 @@ class JacksonGreen(ElasticPlastic):
     (0.004, 0.10296)
     """
 
-    name: ClassVar[str] = "jackson-green"
+    name = "jackson-green"
+    of_radius: ClassVar[dict[str, float]] = {"yield_strain": 0.0, "critical": 1.0}
+    in_si = "yield_strength", "a yield strength in Pa, or both of the other two"
     _fits: ClassVar = (Piece(1.9, load=_jackson_load, area=_jackson_area),)
 
     yield_strength: float | None = None
@@ -262,25 +254,12 @@ class JacksonGreen(ElasticPlastic):
     yield_strain: float | None = None
     bridge: Literal["hermite"] | None = None
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self.check_constants("yield_strength", "yield_strain")
-        reduced = (self.yield_strain is not None, self.critical is not None)
-        if reduced[0] != reduced[1] or reduced[0] == (self.yield_strength is not None):
-            raise ValueError(
-                f"yield_strength = {self.yield_strength!r}, yield_strain = {self.yield_strain!r}, "
-                f"critical = {self.critical!r}: give a yield strength in Pa, or both of the other two"
-            )
-
     @property
     def yield_factor(self) -> float:
         """C, the greatest contact pressure at the onset of yield over the yield strength."""
         return 1.295 * math.exp(0.736 * self.poisson)
 
-    def on(self, surface: Surface) -> Self:
-        """Return the law on this surface, in reduced units, without `yield_strength`."""
-        if self.yield_strength is None:
-            return self
-        strain = self.yield_strength / surface.E_star
-        critical = self._critical_at(strain, surface)
-        return replace(self, yield_strength=None, yield_strain=strain, critical=critical)
+    def reduced_on(self, surface: Surface, value: float) -> dict[str, float]:
+        """Return S_y over E*, and delta_c of an asperity of modulus E*, over sigma."""
+        critical = yields_at(surface, self.yield_factor, value)
+        return {"yield_strain": value / surface.E_star, "critical": critical}

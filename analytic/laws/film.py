@@ -1,7 +1,8 @@
 """Electrical and thermal contact conductance of spots with a film, and how spots crowd each other."""
 
 import math
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, field
 from functools import lru_cache
 from numbers import Real
 from typing import Any
@@ -54,6 +55,10 @@ class Layer:
 class Film:
     """What contact spots conduct through: the resistivities or thermal conductivities, and a film or layer.
 
+    A spot of radius a constricts the flow, in series with a film: ``1/C = rho/(4 a) + r_f/(pi a^2)``, so that
+    C over 4 sqrt(R sigma)/rho is ``a^2/(a + b)``; over a layer rho depends on a. For Sharvin's (or Knudsen's)
+    resistance with the mean free path l, add ``16 l/(3 pi)`` to b.
+
     Parameters
     ----------
     resistivity : float, optional
@@ -72,6 +77,10 @@ class Film:
         If a number is not finite and > 0 (film: >= 0), or not exactly one of
         `resistivity` and `conductivities` is given.
 
+    Notes
+    -----
+    Source: R. Holm, Electric Contacts (1967).
+
     Examples
     --------
     On copper, a film of 1e-14 ohm m^2 resists as much as the constriction of a spot of radius 0.37 um:
@@ -85,6 +94,7 @@ class Film:
     film_resistance: float = 0.0
     conductivities: tuple[float, float] | None = None
     layer: Layer | None = None
+    unit: Any = field(default=None, init=False, repr=False)  # sqrt(R sigma) of its surface, m
 
     def __post_init__(self) -> None:
         if (self.resistivity is None) == (self.conductivities is None):
@@ -117,49 +127,37 @@ class Film:
         """Radius of a spot whose film and constriction resist alike, m: ``b = 4 r_f/(pi rho)``."""
         return 4 * self.film_resistance / (math.pi * self.rho)
 
-    def on(self, surface: Surface) -> "SpotConductance":
-        """Return the conductance of spots, in the reduced units of a surface."""
-        return SpotConductance(self, math.sqrt(surface.radius * surface.sigma))
-
-
-@dataclass(frozen=True)
-class SpotConductance:
-    """Conductance of a spot by its radius: constriction, also in a layer, in series with a film.
-
-    ``1/C = rho/(4 a) + r_f/(pi a^2)``, so that C over 4 sqrt(R sigma)/rho is ``a^2/(a + b)``; over a layer
-    rho depends on a. Source: R. Holm, Electric Contacts (1967). For Sharvin's (or Knudsen's) resistance with
-    the mean free path l, add ``16 l/(3 pi)`` to b.
-    """
-
-    film: Film
-    unit: float  # sqrt(R sigma), m
+    def on(self, surface: Surface) -> "Film":
+        """Return it on this surface, for spots in reduced units."""
+        reduced = copy(self)
+        hold(reduced, unit=math.sqrt(surface.radius * surface.sigma))
+        return reduced
 
     @property
     def finest(self) -> float:
         """How far above first touch it is analytic: radii that go on to negative ones meet a pole."""
-        farthest = self.film.alike or math.inf
-        if self.film.layer is not None:
-            thickness, film = self.film.layer.thickness, self.film.alike * self.film.rho
+        farthest = self.alike or math.inf
+        if self.layer is not None:
+            thickness, film = self.layer.thickness, self.alike * self.rho
             resists = self._resists(-_REACH * thickness) + film  # branch points are at radii of i n t
             changes = np.flatnonzero((resists < 0) != (film == 0))
             farthest = thickness * float(min([1.0, *_REACH[np.maximum(changes[:1] - 1, 0)]]))
         return float(farthest / self.unit) ** 2
 
-    def __call__(self, radius: Array, ratios: Array | None = None) -> Array:
-        """Conductance over 4 sqrt(R sigma), in 1/(ohm m) or W/(m K), analytic in the radius up to -b.
+    def conductance(self, radius: Array, ratios: Array | None = None) -> Array:
+        """Return that of a spot over 4 sqrt(R sigma), in 1/(ohm m) or W/(m K), analytic down to -b.
 
         Of summits whose radii are these multiples of the surface's, each in units of its own.
         """
         a = radius * (self.unit if ratios is None else self.unit * np.sqrt(ratios))
-        resists = self._resists(a) + self.film.alike * self.film.rho
+        resists = self._resists(a) + self.alike * self.rho
         return np.asarray(radius * np.divide(a, resists, where=resists != 0, out=np.zeros_like(resists)))
 
     def _resists(self, a: Array) -> Array:
         """Return what takes the place of rho, times the radius."""
-        film = self.film
-        if film.layer is None or film.conductivities is None:
-            return a * film.rho
-        return a * layered_resistivity(a, film.layer.thickness, film.layer.conductivity, *film.conductivities)
+        if self.layer is None or self.conductivities is None:
+            return a * self.rho
+        return a * layered_resistivity(a, self.layer.thickness, self.layer.conductivity, *self.conductivities)
 
 
 def layered_resistivity(
@@ -180,9 +178,8 @@ def layered_resistivity(
     side = np.where(np.real(radius) < 0, -1.0, 1.0)
     smallest = 1e-100 * thickness
     over = 2 * thickness / np.where(np.abs(radius) > smallest, side * radius, smallest)
-    images = np.zeros_like(over)
-    for n, weight in _images((conductivity - under) / (conductivity + under)):
-        images += weight * _image(n * over)
+    series = _images((conductivity - under) / (conductivity + under))
+    images = sum((weight * _image(n * over) for n, weight in series), np.zeros_like(over))
     return np.asarray((1 + side * (8 / math.pi) * images) / conductivity + 1 / other)
 
 

@@ -8,16 +8,15 @@ Everything is in reduced units. An asperity of height s under a plane at the sep
 
 import math
 from collections.abc import Callable
-from copy import copy
 from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Self, cast
 
 import numpy as np
 
-from analytic.arrays import Array, Ints, hold
+from analytic.arrays import Array, Ints
 from analytic.surface import Surface, check_positive
 
-_STEP = 1e-30  # of a variable, into the complex plane
+STEP = 1e-30  # of a variable, into the complex plane
 NEXT_TO_0 = 1e-60  # stands for 0: cubes of it, times a step, are still numbers
 
 
@@ -28,118 +27,55 @@ class ContactLaw:
     the penetration ``limits(e)[j - 1]``. `load` and `radius` of a piece are one formula each that goes on
     smoothly beyond its ends, so that those of piece 0 also take -y. For a slope, formulas are asked for
     complex y: they must not take absolute values, or compare.
-
-    Attributes
-    ----------
-    name : str
-        Name of the law in scene files and reports.
-    elastic : bool
-        Whether an asperity unloads along its loading curve.
-    yields : bool
-        Whether an asperity yields.
-    stiff : bool
-        False if on unloading the stiffness of a contact has no variance, and so is refused.
-    finest : float
-        How far above first touch the formulas of piece 0 are analytic, in penetration: infinite if they
-        are sums of powers of y.
-    of_radius : (str, float) or None
-        A constant that follows the radius of a summit, and the power of the radius on one surface that it
-        goes as.
-    in_si : (str, str) or None
-        The constant in SI units that may stand for that one, and words for the two.
-    root : bool
-        False if piece 0 is no analytic function of y next to y = 0, as a power that is no half-integer.
     """
 
-    name: ClassVar[str] = "hertz"
-    elastic: ClassVar[bool] = True
-    yields: ClassVar[bool] = False
-    root: ClassVar[bool] = True
-    stiff: ClassVar[bool] = True
-    of_radius: ClassVar[tuple[str, float] | None] = None
-    in_si: ClassVar[tuple[str, str] | None] = None
+    name: ClassVar[str] = "hertz"  #: in scene files and reports
+    elastic: ClassVar[bool] = True  #: whether an asperity unloads along its loading curve
+    yields: ClassVar[bool] = False  #: whether an asperity yields
+    stiff: ClassVar[bool] = True  #: whether stiffness on unloading has a variance; without one it is refused
+    root: ClassVar[bool] = True  #: whether piece 0 is analytic in y next to y = 0, as half-integer powers
+    is_data: bool = True  #: whether the law consists of plain numbers, which can be stored in a file
+    #: constants in reduced units, each with the power of a summit's radius that it goes as on one surface
+    of_radius: ClassVar[dict[str, float]] = {}
+    #: the constant in SI units that may stand for all of those, and words for what to give
+    in_si: ClassVar[tuple[str, str]] = "", ""
+
+    def __post_init__(self) -> None:
+        """Refuse constants out of range, and any in SI units beside reduced ones, or neither."""
+        si, advice = self.in_si
+        given = {name: getattr(self, name) for name in (si, *self.of_radius) if name}
+        if si and any((given[name] is None) == (given[si] is None) for name in self.of_radius):
+            told = ", ".join(f"{name} = {value!r}" for name, value in given.items())
+            raise ValueError(f"{told}: give {advice}")
+        check_positive("", **given)
+        check_poisson(getattr(self, "poisson", None))
 
     @property
     def finest(self) -> float:
-        """How far above first touch the formulas of piece 0 are analytic."""
+        """How far above first touch formulas are analytic, in penetration; infinite if powers of y alone."""
         return math.inf
-
-    @property
-    def is_data(self) -> bool:
-        """Whether the law consists of plain numbers, which can be stored in a file."""
-        return True
-
-    def as_data(self, deepest: float) -> "ContactLaw":
-        """Return the law as plain numbers, up to a given penetration of an asperity of modulus E*."""
-        return self
-
-    def agrees(self, other: "ContactLaw") -> bool:
-        """Return whether another law is the same, up to rounding in a stored series."""
-        return self == other
 
     def given(self) -> dict[str, Any]:
         """Return the constants of the law that the user gave, by name."""
         known: list[str] = [field.name for field in fields(self)] if is_dataclass(self) else []
         return {name: getattr(self, name) for name in known if getattr(self, name) is not None}
 
-    @property
-    def hertz(self) -> bool:
-        """Whether this is Hertz's law, for which closed forms exist."""
-        return type(self) in (ContactLaw, Hertz)
-
-    def check_constants(self, *others: str) -> None:
-        """Refuse constants that are not numbers > 0, and two that fix the same thing, or neither of these."""
-        names = [pair[0] for pair in (self.in_si, self.of_radius) if pair]
-        given = {name: getattr(self, name) for name in (*names, *others)}
-        if self.in_si and sum(given[name] is None for name in names) != 1:
-            told = ", ".join(f"{name} = {given[name]!r}" for name in names)
-            raise ValueError(f"{told}: give one of them, {self.in_si[1]}")
-        check_positive("", **given)
-        poisson = getattr(self, "poisson", None)
-        if poisson is not None:
-            check_poisson(poisson)
-
     def on(self, surface: Surface) -> Self:
         """Return the law on this surface, in reduced units: nothing is left in Pa or m."""
-        if not (self.in_si and self.of_radius) or getattr(self, self.in_si[0]) is None:
+        si, law = self.in_si[0], cast(Any, self)
+        if (value := getattr(self, si, None)) is None:
             return self
-        law: Any = self
-        return replace(law, **{self.in_si[0]: None, self.of_radius[0]: self.reduced_on(surface)})  # type: ignore[no-any-return]
+        return replace(law, **{si: None}, **self.reduced_on(surface, value))  # type: ignore[no-any-return]
 
-    def reduced_on(self, surface: Surface) -> float:
-        """Return the constant that follows the radius, on this surface: a length over sqrt(R sigma)."""
-        length: float = getattr(self, self.in_si[0])  # type: ignore[index]
-        return length / math.sqrt(surface.radius * surface.sigma)
+    def reduced_on(self, surface: Surface, value: float) -> dict[str, float]:
+        """Return what its constant in SI units is on this surface: a length over sqrt(R sigma)."""
+        return dict.fromkeys(self.of_radius, value / math.sqrt(surface.radius * surface.sigma))
 
-    @property
-    def reduced(self) -> Any:
-        """The constant that follows the radius, or one for each summit; a ValueError if it is in SI units."""
-        assert self.of_radius
-        value = getattr(self, self.of_radius[0])
-        if value is None:
-            raise ValueError(
-                f"{self}: put it on a surface first, law.on(surface), or give `{self.of_radius[0]}`"
-            )
+    def reduced(self, name: str) -> Any:
+        """Return a constant in reduced units, or one for each summit; a ValueError if it is in SI units."""
+        if (value := getattr(self, name)) is None:
+            raise ValueError(f"{self}: put it on a surface first, law.on(surface), or give `{name}`")
         return value
-
-    def with_radii(self, ratios: Array) -> Self:
-        """Return it in the units of summits whose radii are these multiples of the surface's.
-
-        Parameters
-        ----------
-        ratios : ndarray
-            One a summit: formulas then take arrays of this shape.
-
-        Returns
-        -------
-        ContactLaw
-            Radii of contact over sqrt(c R sigma), loads over ``(4/3) E* sqrt(c R) sigma^(3/2)``.
-        """
-        if not self.of_radius:
-            return self
-        changed, (name, power) = copy(self), self.of_radius
-        hold(changed, **{name: getattr(self, name) * ratios**power})  # checks are for numbers
-        return changed
 
     def limits(self, e: Array) -> Array:
         """Return penetrations where the next piece begins, increasing; shape ``(pieces - 1, *e.shape)``."""
@@ -197,26 +133,24 @@ class Hertz(ContactLaw):
     8.0
     """
 
-    name: ClassVar[str] = "hertz"
+    name = "hertz"
 
 
-def check_poisson(poisson: float) -> None:
+def check_poisson(poisson: float | None) -> None:
     """Refuse a value that is not a Poisson's ratio."""
-    if not -1 < poisson <= 0.5:
+    if poisson is not None and not -1 < poisson <= 0.5:
         raise ValueError(f"poisson = {poisson!r}: give a Poisson's ratio, above -1 and at most 0.5")
 
 
 def piece_of(law: ContactLaw, penetration: Array, e: Array) -> Ints:
     """Which piece of the law holds at these penetrations, in the shape of both."""
-    piece = np.zeros(np.broadcast_shapes(np.shape(penetration), np.shape(e)), dtype=np.int64)
+    first = np.zeros(np.broadcast(penetration, e).shape, dtype=np.int64)
     with np.errstate(divide="ignore", over="ignore"):  # without a modulus nothing yields
-        for limit in law.limits(e):
-            piece += limit <= penetration
-    return piece
+        return sum((limit <= penetration for limit in law.limits(e)), first)
 
 
 def slope_in_root(formula: Callable[[Any], Any], y: Array) -> Array:
     """``d formula/d(y^2)``, at y = 0 its limit."""
     y = np.where(y == 0, NEXT_TO_0, y)
-    step = _STEP * np.abs(y)
+    step = STEP * np.abs(y)
     return np.asarray(np.imag(formula(y + 1j * step)) / step / (2 * y))

@@ -16,7 +16,6 @@ from analytic import QUANTITIES, SEPARATIONS, quantity_of
 from analytic.arrays import Array
 from analytic.at_load import Moments, specimen_moments
 from analytic.interaction import in_series
-from analytic.laws.elastic_plastic import ElasticPlastic
 from mcgw.ensemble.results import Results
 from mcgw.ensemble.separation import crossing
 from mcgw.scene.scene import Scene
@@ -52,7 +51,7 @@ def mean_surface(scene: Scene, given: str, value: float) -> dict[str, float]:
 
 def quantities_at(scene: Scene) -> tuple[str, ...]:
     """Names of all quantities of a loaded surface."""
-    yielding = ("load_slope", "yielded") if isinstance(scene.law, ElasticPlastic) else ()
+    yielding = ("load_slope", "yielded") if scene.law.yields else ()
     return (*QUANTITIES, *yielding, *(() if scene.film is None else ("conductance_si",)))
 
 

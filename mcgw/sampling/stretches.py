@@ -47,12 +47,13 @@ def _stretches(branch: Branch, grading: Grading, separations: bytes, low: float,
     nothing, begin = np.abs(left) <= _NOTHING, found.low - left  # on a separation, but for rounding
     last = np.nextafter(found.high, -np.inf)
     dwindling = np.abs(branch.left(at, last - at, grading(last))) <= _NOTHING
+    follows = (found.low[1:] <= found.high[:-1]) & (np.diff(found.separation) == 0)
     return Stretches(
         separation=found.separation,
         low=np.where(inside, found.low, -np.inf),
         high=np.where(found.high < high, found.high, np.inf),
         piece=found.piece,
-        begins=inside & nothing & ~found.goes_on[:-1],
+        begins=inside & nothing & ~np.append(False, follows)[: at.size],
         root=np.where(nothing, found.low, np.where(np.abs(begin - at) <= _NOTHING, at, begin)),
         lost=dwindling & (found.high < high) & (found.low < last),
     )

@@ -175,16 +175,7 @@ def listed_summits(section: Section, folder: Path) -> Listed | None:
 
 def contact_law(section: Section) -> ContactLaw:
     """Read the law and its constants; mistakes are noted in the section and give Hertz's."""
-    return _law(section, Hertz.name, custom=_custom) or Hertz()
-
-
-def _custom(critical: float, limits: Any, load: Any, area: Any, checked: bool = True) -> ContactLaw:
-    """Explain what a contact law of a Python script becomes in a file."""
-    for key, edges in (("load", load[0].edges), ("area", area[0].edges)):
-        if edges[0] != -edges[-1]:
-            reach = f"{edges[0]:g} to {edges[-1]:g}"
-            raise ValueError(f"{key}: the first piece reaches from {reach}, not around 0")
-    return CustomLaw(load, area, limits, critical, checked)
+    return _law(section, Hertz.name) or Hertz()
 
 
 def evenly(start: float, stop: float, num: int) -> tuple[float, ...]:

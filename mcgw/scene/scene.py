@@ -271,7 +271,7 @@ def _resolved_law(scene: Scene, low: float, high: float) -> ContactLaw:
     try:
         if np.isinf(farthest):
             raise ValueError("no series reaches that far")
-        return scene.law.as_data(farthest)
+        return scene.law.as_data(farthest)  # type: ignore[attr-defined,no-any-return]
     except ValueError as error:
         steep = (
             f"E*(s)/E* reaches {stiffest:.3g} at s = {where:.4g}, where no series of the law is accurate; "

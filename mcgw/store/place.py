@@ -5,7 +5,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from analytic import PiecewiseSeries
+from analytic import CustomLaw, PiecewiseSeries
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Labelled
 from mcgw.errors import RunError, StoreError
@@ -43,7 +43,7 @@ def as_recorded(scene: Scene, path: Path) -> Scene:
     mine, before = resolved.grading, there.grading
     if isinstance(mine, PiecewiseSeries) and isinstance(before, PiecewiseSeries) and mine.agrees(before):
         resolved = resolved.replace(grading=before)
-    if resolved.law.agrees(there.law):
+    if isinstance(resolved.law, CustomLaw) and resolved.law.agrees(there.law):
         resolved = resolved.replace(law=there.law)
     return resolved
 

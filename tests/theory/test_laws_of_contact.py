@@ -91,9 +91,9 @@ def test_film_and_constriction_are_in_series_and_spots_crowd_by_their_area():
     """Holm's formula in ohm, for one spot."""
     film, rho, a = 2e-13, 3.5e-8, 1.7e-6
     unit = np.sqrt(SURFACE.radius * SURFACE.sigma)
-    conductance = 4 * unit * Film(rho, film).on(SURFACE)(np.array(a / unit))
+    conductance = 4 * unit * Film(rho, film).on(SURFACE).conductance(np.array(a / unit))
     assert 1 / conductance == pytest.approx(rho / (4 * a) + film / (np.pi * a**2), rel=1e-14)
-    assert Film(1.0).on(SURFACE)(np.array(0.3)) == 0.3
+    assert Film(1.0).on(SURFACE).conductance(np.array(0.3)) == 0.3
     np.testing.assert_allclose(crowding_factor([0.0, 0.01, 0.25]), [1.0, 0.9**1.5, 0.5**1.5], rtol=1e-15)
 
 
