@@ -64,8 +64,7 @@ class OneAsperity:
     def span(self) -> tuple[float, float, float]:
         """Lowest sum, highest one of surfaces without rare large values, longest step of a lattice.
 
-        The step is a twelfth of the standard deviation of usual sums. Surfaces on which an asperity may touch
-        alone have lattices of any step, that is narrower ones, too.
+        Where an asperity may touch alone any step will do, else a twelfth of the deviation of usual sums.
         """
         x, p, n = self.middle, self.shares, self.number
         rarer = n * np.cumsum(p[::-1])[::-1]
@@ -78,10 +77,7 @@ class OneAsperity:
         return float(low), float(high), np.inf if self.alone > 1e-25 else float(spread[0]) / 12
 
     def upto(self, x: Array, end: float, points: int) -> Array:
-        """Return the shares of surfaces in contact with sums up to x, by a lattice that ends there or beyond.
-
-        Values beyond its end are left out: no sum that is read has them.
-        """
+        """Return the shares of surfaces in contact with sums up to x, by a lattice to there or beyond."""
         low, size = self.span[0], 2 * points
         step, k = (end - low) / points, np.arange(size)
         first = np.floor(low / step) - _MARGIN
@@ -156,10 +152,9 @@ def distribution_of(model: Any, quantity: str, h: float, other: bool = False) ->
 def shares_upto(
     model: Any, quantity: str, h: float, number: float, values: Array, *, other: bool = False
 ) -> Array:
-    """Return the shares of surfaces of a number of asperities whose sum is no more than some values, SI.
+    """Return the shares, to 1e-6, of surfaces of so many asperities with sums no more than some values, SI.
 
-    They are right to 1e-6 or better, by one lattice that ends with the largest value. Of many contacts it has
-    usual sums, and ends where it would not resolve them: shares are then a bound.
+    By one lattice up to the largest; where that does not resolve the usual sums, shares are a bound.
     """
     if number < 1:
         return np.where(values >= 0, 1.0, 0.0)
@@ -183,17 +178,14 @@ def one_asperity(model: Any, quantity: str, h: float, cells: int, number: float 
 def in_cells(
     model: Any, several: Sequence[str], h: float, rule: HeightRule, at_nodes: Array, cells: int, lowest: float
 ) -> tuple[Array, Array, Array]:
-    """Return what asperities add at both ends of cells between the nodes of a rule, and probabilities.
+    """Return what asperities add, over scales, at both ends of cells between the nodes of a rule, and shares.
 
-    Over scales, shape (cells, quantities). Listed heights are cells of no width; others keep the means. Cells
-    are finer where more asperities are; the first begins at the lowest height.
+    Of shape (cells, quantities); listed heights are cells of no width, others keep the means.
     """
-    p, ratios = rule.probabilities, rule.ratios
+    s, p, ratios = rule.heights, rule.probabilities, rule.ratios
     if not p.any() or isinstance(model.heights, MeasuredHeights):
         return at_nodes, at_nodes, p
-    order = np.arange(p.size) if ratios is None else np.lexsort((rule.heights, -ratios))  # radius by radius
-    s, root = rule.heights[order], np.sqrt(p[order])
-    radius = np.zeros(p.size) if ratios is None else ratios[order]
+    root, radius = np.sqrt(p), np.zeros(p.size) if ratios is None else ratios
     parts = np.ceil(cells * (root / root.sum() + 1 / root.size)).astype(np.int64)
     first = np.append(True, np.diff(radius) != 0)  # height of a radius
     start = np.where(first, max(lowest, model.heights.support[0]), np.append(0.0, s[:-1]))
@@ -205,7 +197,7 @@ def in_cells(
         own = wide * model.heights.pdf(middle)
     else:
         own = wide * model.curvature.density(middle, MEAN_CURVATURE / radius)
-    whole, which = np.bincount(which, p[order]), np.repeat(which, parts)  # each radius keeps its share
+    whole, which = np.bincount(which, p), np.repeat(which, parts)  # each radius keeps its share
     own *= (whole / np.bincount(which, own))[which]
     at = np.concatenate([left + 1e-9 * wide, left + wide])  # right of where contacts begin
     nodes = HeightRule(at, 0 * at, rule.below, None if ratios is None else np.tile(radius, 2))
@@ -241,10 +233,9 @@ def normal_scores(
     apart: float = math.inf,
     other: bool = False,
 ) -> tuple[list[float], list[float]]:
-    """Return separations, and normal scores of the shares of surfaces with sums up to a value there.
+    """Return separations, and normal scores, at most so far `apart`, of the shares with sums up to a value.
 
-    From one that next to no surface is below to one that next to none is above, by steps `wide` or narrower:
-    scores are at most so far apart. Sums that may rise with the separation are a ValueError.
+    From next to no surface to next to all; sums that may rise with the separation are a ValueError.
     """
     start = float(model.separation_at(quantity, value))
     rule = model.rule([start], [quantity])

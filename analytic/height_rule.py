@@ -15,7 +15,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.arrays import Array, Ints
+from analytic.arrays import Array
 from analytic.curvature import MEAN_CURVATURE, RandomCurvature
 from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
@@ -29,7 +29,7 @@ Cuts = Callable[[Array], Array]  # of ratios of radii: heights, shape (cuts, rad
 
 _TOGETHER = 2**17  # terms that are found together: a cache holds them
 _DIVERGES = 4  # power of the radius of a summit that has no mean
-_NARROW, _PER_NARROW, _PER_PIECE = 0.25, 16, 32  # of many radii: heights of a narrow piece, and points
+_PER_PIECE = 32  # points of a piece of many radii
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,23 +89,20 @@ class HeightRule:
             curvatures, of_radii = own.rule(h[-1])
             pieces = np.ceil((top - start) / min(SPANS * own.narrowest, WIDEST))
             ratios, regular = MEAN_CURVATURE / curvatures, np.linspace(start, top, int(pieces) + 1)
-        common = np.concatenate([regular, resolved_breaks(grading, start, top), lowest])
-        edges, which = [np.tile(common, ratios.size)], [np.repeat(np.arange(ratios.size), common.size)]
+        ends = [np.concatenate([regular, resolved_breaks(grading, start, top), lowest])] * ratios.size
+        if cuts is not None:
+            ends = [np.append(*each) for each in zip(ends, cuts(ratios).T, strict=True)]
         for branch in branches:  # at each separation, which has the radii in turn
             branch = branch if own is None else branch.with_radii(ratios)
             found = branch.regimes(grading, np.repeat(h, ratios.size), start, top)
-            edges += [found.low, found.high]
-            which += [found.separation % ratios.size] * 2
-        if cuts is not None:
-            more = cuts(ratios)
-            edges, which = [*edges, more.ravel()], [*which, np.tile(np.arange(ratios.size), len(more))]
-        left, right, of = _pieces(np.concatenate(edges), np.concatenate(which), start, top)
+            some, bounds = found.separation % ratios.size, np.stack([found.low, found.high])
+            ends = [np.append(each, bounds[:, some == k]) for k, each in enumerate(ends)]
+        ends = [np.unique(np.clip(each, start, top)) for each in ends]
+        left, right = (np.concatenate([each[part] for each in ends]) for part in (np.s_[:-1], np.s_[1:]))
         if own is None:
             return cls(*_of_heights(heights, left, right), below)
-        wide, parts = right - left > _NARROW, []
-        for some, points in ((wide, _PER_PIECE), (~wide, _PER_NARROW)):
-            parts.append((*in_pieces(left[some], right[some], points), np.repeat(of[some], points)))
-        s, weights, of = (np.concatenate(part) for part in zip(*parts, strict=True))
+        s, weights = in_pieces(left, right, _PER_PIECE)
+        of = np.repeat(np.arange(ratios.size), [_PER_PIECE * (each.size - 1) for each in ends])
         return cls(s, weights * of_radii[of] * own.density(s, curvatures[of]), below, ratios[of])
 
     def mean(self, f: Array) -> Array:
@@ -159,21 +156,8 @@ class HeightRule:
         return terms.reshape(self.heights.size, len(quantities) * h.size)
 
 
-def _pieces(cuts: Array, which: Ints, start: float, top: float) -> tuple[Array, Array, Ints]:
-    """Return the ends of the pieces between the cuts of each radius, and the number of the radius."""
-    inside = (cuts >= start) & (cuts <= top)
-    cuts, which = cuts[inside], which[inside]
-    order = np.lexsort((cuts, which))
-    cuts, which = cuts[order], which[order]
-    held = np.flatnonzero((np.diff(which) == 0) & (np.diff(cuts) > 0))
-    return cuts[held], cuts[held + 1], which[held]
-
-
 def _of_heights(law: HeightLaw, left: Array, right: Array) -> tuple[Array, Array]:
-    """Return heights and probabilities of the pieces.
-
-    The narrow ones next to a singular end, in which no heights are told apart, have their exact probability.
-    """
+    """Return heights and probabilities, those at a singular end exact where no heights are told apart."""
     s, weights = in_pieces(left, right, NODES)
     probabilities = (weights * law.pdf(s)).reshape(-1, NODES)
     for ends, share, other in ((left, law.cdf, right), (right, law.sf, left)):
