@@ -31,12 +31,14 @@ second order in what surfaces differ by, fluctuations to leading order.
 import math
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
+from analytic.quadrature import fall_of
 from analytic.quantities import JOINT, NOT_SUMS, SEPARATIONS, Quantity, quantity_of
 from analytic.surface import Surface, check_positive
 
@@ -156,11 +158,6 @@ class Interaction:
         return BOWL / 2 * resistivity * math.sqrt(surface.nominal_area) if self.reference == "body" else 0.0
 
 
-def _itself(x: Array, order: int = 0) -> Array:
-    """Return the separation, or a derivative of it by itself."""
-    return x if order == 0 else np.full_like(x, float(order == 1))
-
-
 @dataclass(frozen=True)
 class Answer:
     """How a quantity of a surface follows from a sum S over its spots and its load P."""
@@ -171,19 +168,10 @@ class Answer:
     series: float = 0.0  # c
     sunk: float = 0.0  # k
     bodies: float = 0.0  # b
-    at_plane: Callable[[Array, int], Array] | None = None  # g of separations and the order of a derivative
+    at_plane: Callable[[Array], Array] | None = None  # g of separations
 
-    def mean(self, model: Any, h: Array, found: tuple[Array, Array, Array] | None = None) -> Array:
-        """Mean over surfaces, to second order; `found` if there is what `at_means` gives."""
-        y, _, (bend_spots, bend_load) = found or self.at_means(model, h)
-        if self.series or self.bodies:
-            y = y + bend_spots * model.cumulants(self.spots, h).variance / 2
-        if self.sunk and self.at_plane is not _itself:
-            y = y + bend_load * model.cumulants(self.load, h).variance / 2
-        return y
-
-    def at_means(self, model: Any, h: Array) -> tuple[Array, Array, Array]:
-        """Value at the means of S and P, and its first and second derivatives by both."""
+    def mean(self, model: Any, h: Array) -> tuple[Array, Array]:
+        """Mean over surfaces, to second order, and derivatives of the value by S and P at their means."""
         y, (slopes, bends) = np.zeros(h.shape), np.zeros((2, 2, *h.shape))
         if self.spots:
             alone = model.mean(self.spots, h)
@@ -191,19 +179,25 @@ class Answer:
             slopes[0], bends[0] = whole**-2.0 / self.per, -2 * self.series * whole**-3.0 / self.per
         if self.at_plane:
             x = h - self.sunk * model.mean(self.load, h) if self.sunk else h
-            y = y + self.at_plane(x, 0)
+            y = y + self.at_plane(x)
             if self.sunk:
-                slopes[1], bends[1] = -self.sunk * self.at_plane(x, 1), self.sunk**2 * self.at_plane(x, 2)
+                fall = partial(fall_of, self.at_plane)
+                slopes[1], bends[1] = self.sunk * fall(x), self.sunk**2 * fall_of(fall, x)
         whole = 1 + self.bodies * y
         bends = (bends - 2 * self.bodies * slopes**2 / whole) / whole**2
-        return in_series(y, self.bodies), slopes / whole**2, bends
+        mean = in_series(y, self.bodies)
+        if self.series or self.bodies:
+            mean = mean + bends[0] * model.cumulants(self.spots, h).variance / 2
+        if self.sunk and self.at_plane is not np.positive:  # which is straight
+            mean = mean + bends[1] * model.cumulants(self.load, h).variance / 2
+        return mean, slopes / whole**2
 
     def law(self, model: Any, h: float) -> "Law":
         """Return the distribution over surfaces, of what follows from S or P alone."""
         law: Law = model.distribution(self.spots or self.load, h)
         if not self.spots:
             return law.mapped(lambda p: h - self.sunk * p, falls=self.sunk > 0)
-        gas = self.at_plane(np.asarray(h), 0) if self.at_plane else 0.0
+        gas = self.at_plane(np.asarray(h)) if self.at_plane else 0.0
 
         def together(spots: Array) -> Array:
             """Infinite from the pole on, which no surface reaches."""
@@ -218,7 +212,7 @@ def answer_of(model: Any, q: Quantity) -> Answer | None:
     way, how, surface = "_unloading" if q.unloading else "", model.interaction, model.surface
     load, rho = f"load{way}", 1.0 if model.film is None else model.film.rho
     if q.name in SEPARATIONS:
-        return Answer("", load, sunk=model.compliance, at_plane=_itself)
+        return Answer("", load, sunk=model.compliance, at_plane=np.positive)
     spots = q.name
     if q.name in JOINT:
         spots = f"conductance_si{way}" if q.name.startswith("joint") else ""

@@ -17,7 +17,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import HermiteE
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array, hold
@@ -189,32 +188,30 @@ class Gap:
     rms: float  # root mean square height of the surface, m
     rise: float  # height of the mean plane of the summits above that of the surface, over sigma
 
-    def __call__(self, h: ArrayLike, order: int = 0) -> Array:
-        """At distances of the mean planes over sigma, between deformed surfaces; or a derivative."""
+    def __call__(self, h: ArrayLike) -> Array:
+        """At distances of the mean planes over sigma, between deformed surfaces."""
         h = np.asarray(h, dtype=np.float64)
         if self.gas is None:
             return np.zeros(h.shape)
-        shrunk = self.sigma / self.rms
-        found = gap_integral((h + self.rise) * shrunk, self.gas.jump / self.rms, order)
-        return self.gas.conductivity / self.rms * shrunk**order * found
+        found = gap_integral((h + self.rise) * self.sigma / self.rms, self.gas.jump / self.rms)
+        return self.gas.conductivity / self.rms * found
 
 
-def gap_integral(y: ArrayLike, m: float, order: int = 0) -> Array:
-    """I(Y, M) to 1e-13, or a derivative of it by Y, in the shape of Y."""
+def gap_integral(y: ArrayLike, m: float) -> Array:
+    """I(Y, M) to 1e-13, in the shape of Y."""
     once, back = np.unique(np.asarray(y, dtype=np.float64), return_inverse=True)
     if once.size <= 512:
-        found = _integrals(once, m, order)
+        found = _integrals(once, m)
     else:  # to 1e-13
         edges = np.linspace(once[0], once[-1], math.ceil((once[-1] - once[0]) / 0.5) + 1)
-        found = fitted(partial(_integrals, m=m, order=order), edges, 18)(once)
+        found = fitted(partial(_integrals, m=m), edges, 18)(once)
     return np.reshape(found[back], np.shape(y))
 
 
-def _integrals(y: Array, m: float, order: int) -> Array:
+def _integrals(y: Array, m: float) -> Array:
     """Each by Gauss-Legendre rules in panels: as fine as M from 0 on, and about Y."""
     near = m * 4.0 ** np.arange(math.ceil(-math.log(m, 4))) if m < 1 else np.empty(0)
     about = np.maximum(y, 0.0) + np.linspace(-10, 10, 5)[:, None]  # standard deviations
     fine = np.maximum(np.append(0.0, near)[:, None], np.maximum(about[0], 0.0))
     x, w = panelled(np.sort(np.append(fine, np.maximum(about, 0.0), axis=0), axis=0))
-    z, turned = x - y, HermiteE.basis(order)  # the derivatives of the Gaussian
-    return np.asarray((w / (x + m) * np.exp(-z * z / 2) * turned(z)).sum(axis=0) / math.sqrt(2 * math.pi))
+    return np.asarray((w / (x + m) * np.exp(-((x - y) ** 2) / 2)).sum(axis=0) / math.sqrt(2 * math.pi))

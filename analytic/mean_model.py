@@ -106,7 +106,7 @@ class MeanModel:
         """
         q = asked(self, quantity, h)
         if answer := answer_of(self, q):
-            return answer.mean(self.alone, np.asarray(h, dtype=np.float64))
+            return answer.mean(self.alone, np.asarray(h, dtype=np.float64))[0]
         return self._mean(q, h)
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
@@ -167,7 +167,7 @@ class MeanModel:
         """
 
         def of(h: Array) -> Array:
-            rule = self._rule(h, ["contacts"], power=1, exponent=1.0)
+            rule = self.rule(h, ["contacts"], power=1, exponent=1.0)
             branch, above = self.ways.loading.with_radii(rule.ratios), rule.heights - h[:, None]
             pieces = branch.pieces(h[:, None], above, self.grading(rule.heights)).T
             some, every = (rule.mean(np.where(kind, 1.0, 0.0)) for kind in (pieces == piece, pieces >= 0))
@@ -205,20 +205,24 @@ class MeanModel:
         if not np.all(np.isfinite(target) & (target > 0)):
             raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
         grid = self._grid(q)
-        rough = self._rule(grid[:1], power=1)  # to a percent, but in tails
+        rough = self.rule(grid[:1], (), power=1)  # to a percent, but in tails
         with np.errstate(divide="ignore", invalid="ignore"):
             about = np.log(rough.mean(rough.terms([q.name], grid, self.grading, self.ways)))
             about += np.log(self.number * q.scale(self.surface))
             return last_separations(lambda h: np.log(self._mean(q, h)), np.log(target), grid, about, quantity)
 
     def rule(
-        self, separations: ArrayLike, quantities: Sequence[str] = ("load",), cuts: Cuts | None = None
+        self,
+        separations: ArrayLike,
+        quantities: Sequence[str] = ("load",),
+        cuts: Cuts | None = None,
+        **powers: float,
     ) -> HeightRule:
         """Heights and probabilities for integrals of these quantities of an asperity at these separations."""
-        h = np.asarray(separations, dtype=np.float64)
-        for name in quantities:
-            asked(self, name, h)
-        return self._rule(h, quantities, cuts)
+        branches = self.ways.among(quantities)
+        return HeightRule.over(
+            separations, self.grading, self.heights, self.curvature, branches=branches, cuts=cuts, **powers
+        )
 
     @cached_property
     def ways(self) -> Branch:
@@ -226,19 +230,11 @@ class MeanModel:
         law = Hertz() if self.law is None else self.law.on(self.surface)
         return Branch(law, self.unload_from, None if self.film is None else self.film.on(self.surface))
 
-    def _rule(
-        self, h: Array, quantities: Sequence[str] = (), cuts: Cuts | None = None, **powers: float
-    ) -> HeightRule:
-        branches = self.ways.among(quantities)
-        return HeightRule.over(
-            h, self.grading, self.heights, self.curvature, branches=branches, cuts=cuts, **powers
-        )
-
     def _mean(self, q: Quantity, h: ArrayLike, *, slope: bool = False) -> Array:
         """Mean of a sum of asperities; or how fast it falls, as long as none jumps."""
 
         def of_one(h: Array) -> Array:
-            rule = self._rule(h, [q.name], power=1, exponent=q.exponent + 1)  # there may be no variance
+            rule = self.rule(h, [q.name], power=1, exponent=q.exponent + 1)  # there may be no variance
             return rule.mean(rule.terms([q.name], h, self.grading, self.ways, slope=slope))
 
         return self.number * q.scale(self.surface) * self._in_parts(h, of_one)

@@ -215,9 +215,9 @@ class Model(MeanModel):
         columns, alone = list(dict.fromkeys(named)), self.alone
         rates, means = np.zeros((len(columns), len(answers), h.size)), []
         for k, (q, answer) in enumerate(zip(several, answers, strict=True)):
-            unit, found = q.scale(self.surface), answer.at_means(alone, h)
-            means.append(answer.mean(alone, h, found) / (self.number * unit))
-            for term, rate in zip((answer.spots, answer.load), found[1], strict=True):
+            unit, (mean, slopes) = q.scale(self.surface), answer.mean(alone, h)
+            means.append(mean / (self.number * unit))
+            for term, rate in zip((answer.spots, answer.load), slopes, strict=True):
                 if term in columns:
                     rates[columns.index(term), k] += rate * quantity_of(term).scale(self.surface) / unit
         axes = np.einsum("sqk,kl->skql", rates, np.eye(h.size)).reshape(len(columns) * h.size, -1)

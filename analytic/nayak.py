@@ -18,7 +18,7 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import log_ndtr
+from scipy.special import hyp1f1, log_ndtr
 
 from analytic.arrays import Array
 from analytic.heights import HeightLaw
@@ -32,14 +32,6 @@ _LARGEST = 13.5  # curvature tau: exp(-tau^2/4) is 1e-20
 _FAR = 40.0  # standard deviations: beyond, densities underflow
 _STEPS = (0.0, 0.7, 1.4, 2.2, 3.2, 4.5, 6.5, 9.5, 14.0, 20.0, 28.0, _FAR)
 _LEAST, _MOST = 1.501, 1e12
-
-
-def _less_one(q: Array) -> Array:
-    """``q - 1 + exp(-q)``, of which the small values do not cancel."""
-    small, series = np.minimum(q, 1.0), np.ones_like(q)
-    for k in range(20, 2, -1):
-        series = 1 - series * small / k
-    return np.where(q < 1, small * small / 2 * series, q + np.expm1(-q))
 
 
 @dataclass(frozen=True)
@@ -159,7 +151,9 @@ def _series(law: Nayak, way: int) -> PiecewiseSeries:
             exponent = -((u - rho * y) ** 2) / 2
             factor = math.log(math.sqrt(3) / (2 * math.pi)) - x * x / 2
         largest = exponent.max(axis=0)
-        sums = (w * 2 * _less_one((width * u) ** 2) * np.exp(exponent - largest)).sum(axis=0)
+        q = (width * u) ** 2
+        summits = q * q * hyp1f1(1, 3, -q)  # 2 (q - 1 + exp(-q)), of which the small values do not cancel
+        sums = (w * summits * np.exp(exponent - largest)).sum(axis=0)
         return np.asarray(np.log(sums) + largest + factor)
 
     return fitted(logarithm, law.edges, _TERMS)

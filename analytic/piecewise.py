@@ -162,10 +162,7 @@ def chebyshev_points(low: Array, high: Array, terms: int) -> Array:
 
 
 def fitted(function: Callable[[Array], Array], edges: Array, terms: int) -> PiecewiseSeries:
-    """Interpolate a function of an array at the Chebyshev points of every interval between increasing edges.
-
-    To the last digits where the function has no feature much narrower than its interval.
-    """
+    """Interpolate a function of an array at the Chebyshev points of every interval between edges."""
     places = chebyshev_points(edges[:-1], edges[1:], terms)
     values = function(places.ravel()).reshape(places.shape)
     return PiecewiseSeries(edges.tolist(), [_without_noise(c) for c in values @ to_coefficients(terms)])

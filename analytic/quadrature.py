@@ -57,10 +57,9 @@ def towards_both_ends(nodes: int) -> tuple[Array, Array]:
 
 
 def panelled(edges: Array) -> tuple[Array, Array]:
-    """Points and weights of Gauss-Legendre rules between neighbouring edges, each of shape (64 m, n).
+    """Points and weights of Gauss rules between edges that increase along the first axis: shape (64 m, n).
 
-    Edges increase along the first axis, shape (k, n), some of them equal. There are m <= k - 1 pieces: those
-    that have no width in any column are left out.
+    Pieces that have no width in any column are left out.
     """
     x, w = gauss_legendre(NODES)
     width = np.diff(edges, axis=0)
@@ -96,12 +95,6 @@ def ends_of(
         return low, high
     first, last = np.clip(np.maximum(separations[[0, -1]], 0.0), low, high).tolist()
 
-    def logarithms(s: Array) -> tuple[Array, Array]:
-        """Of what is summed, over a constant, and of the modulus in it."""
-        with np.errstate(divide="ignore"):
-            modulus = power * np.log(np.abs(grading(s)))
-        return law.log_pdf(s) + modulus + exponent * np.log1p(np.abs(s - low)), modulus
-
     def reach(start: float, limit: float) -> float:
         """Return the height beyond which nothing is left, up or down to a limit."""
         if start == limit:
@@ -112,13 +105,15 @@ def ends_of(
         counts = np.flatnonzero(density > density[density < np.inf].max(initial=-np.inf) + _NOTHING)
         end = far = float(away[min(counts.max(initial=-1) + 1, away.size - 1)])
         for _ in range(_MOST_STEPS):
-            weight, modulus = logarithms(start + way * far * _ALONG)
-            if far == room or not weight[-1] > weight.max() - _LOST:
-                if far == end or modulus.max() < steepest:
-                    return limit if far == room else start + way * far
+            s = start + way * far * _ALONG
+            with np.errstate(divide="ignore"):
+                modulus = power * np.log(np.abs(grading(s)))
+                weight = law.log_pdf(s) + modulus + exponent * np.log1p(np.abs(s - low))
+            enough = far == room or not weight[-1] > weight.max() - _LOST
+            if modulus.max() > steepest and not (enough and far == end):
                 break
-            if modulus.max() > steepest:
-                break
+            if enough:
+                return limit if far == room else start + way * far
             far = min(_FARTHER * far, room)
         raise ValueError(
             f"grading: up to s = {start + way * far:.4g} E*(s)/E* increases too steeply, or the tail of the "

@@ -24,31 +24,14 @@ def sign_changes(
 ) -> Array:
     """Return the arguments behind which functions have the sign that they have at `right`.
 
-    Parameters
-    ----------
-    excess : callable
-        Of arguments, shape (m,), and of the numbers of the functions; shape (m,). Nan is a negative value.
-    left, right : ndarray
-        Where the values are negative at one end and not at the other, shape (functions,).
-    unit : ndarray
-        Size of the numbers whose rounding the values have besides, shape (functions,).
-    at_ends : (ndarray, ndarray), optional
-        Values at `left` and `right`, where they are known and tell where to begin; else half way.
-    close : float, optional
-        Size of a value that counts as 0.
+    The functions, of arguments and of their own numbers, are negative at one end and not at the other; nan is
+    a negative value. To some last digits, also of the `unit` whose rounding the values have besides; where a
+    function jumps past 0, right behind the jump. Values `at_ends`, where they are known, tell where to begin;
+    those up to `close` count as 0.
 
-    Returns
-    -------
-    ndarray
-        To some last digits, shape (functions,). Where a function jumps past 0, right behind the jump.
-
-    Notes
-    -----
     By Chandrupatla's rule: inverse quadratic steps where they are safe, else halves (T. R. Chandrupatla,
     Adv. Eng. Softw. 28 (1997) 145).
 
-    Examples
-    --------
     >>> sign_changes(lambda x, which: x**2 - [2, 3], np.zeros(2), np.full(2, 2.0), np.ones(2)).round(12)
     array([1.41421356, 1.73205081])
     """

@@ -2,11 +2,11 @@
 
 import math
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from time import thread_time
+from timeit import repeat
 from typing import Any
 
 import numpy as np
@@ -65,14 +65,12 @@ class ScipyHeights(HeightLaw):
 
     def _check_speed(self) -> None:
         low, high = np.clip(self.distribution.support(), -3.0, 3.0)
-        for _ in range(4):  # the first call may load something, another one wait for memory to be collected
-            start = thread_time()
-            self.distribution.pdf((low + high) / 2)
-            if (seconds := thread_time() - start) <= _SLOW:
-                return
-        raise ValueError(
-            f"{self._name}: one density takes SciPy {1e3 * seconds:.0f} ms; give another law, or a table"
-        )
+        density = partial(self.distribution.pdf, (low + high) / 2)
+        seconds = min(repeat(density, number=1, repeat=3, timer=thread_time))  # the first may load something
+        if seconds > _SLOW:
+            raise ValueError(
+                f"{self._name}: one density takes SciPy {1e3 * seconds:.0f} ms; give another law, or a table"
+            )
 
     @property
     def shapes(self) -> dict[str, float]:
@@ -112,7 +110,7 @@ class ScipyHeights(HeightLaw):
     def _end(self, inverse: Callable[[float], Any], outward: float) -> float:
         """Where heights end of which SciPy says that they do not, as Pearson's of type III; or infinity."""
         pdf = self.distribution.pdf
-        with _quiet():
+        with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore", category=RuntimeWarning):
             end = float(inverse(_NO_RARER))
             ends = math.isfinite(end) and pdf(end + _OUTSIDE * outward) == 0 < pdf(end - _INSIDE * outward)
         return end if ends else math.copysign(math.inf, outward)
@@ -163,7 +161,7 @@ class ScipyHeights(HeightLaw):
         found, law, (mean, std) = np.empty(below.shape), self.distribution, self._mean_std
         lost = np.ones(below.shape, dtype=bool)
         low = below < above
-        with _quiet():
+        with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore", category=RuntimeWarning):
             for side, share, inverse, tail in (
                 (low, below, law.ppf, self.cdf),
                 (~low, above, law.isf, self.sf),
@@ -172,14 +170,6 @@ class ScipyHeights(HeightLaw):
                 lost[side] = ~(np.abs(np.log(tail(found[side]) / share[side])) < _SAME)
         found[lost] = super().between(below[lost], above[lost])
         return found
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Without warnings of NumPy, and Boost's of what it does not find."""
-    with np.errstate(all="ignore"), warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)
-        yield
 
 
 def _without_place(distribution: Any) -> Any:
