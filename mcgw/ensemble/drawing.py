@@ -19,8 +19,7 @@ from analytic import quantity_of
 from mcgw.ensemble.results import CHUNK_ROWS, Results, Tables, joined
 from mcgw.machine.compiling import in_threads, pieces
 from mcgw.machine.process import check_memory
-from mcgw.sampling.block import Source, Sums
-from mcgw.sampling.counts import GROUP
+from mcgw.sampling.block import GROUP, Source, Sums
 from mcgw.sampling.expected import Expected
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene import Scene
@@ -65,7 +64,7 @@ def kept(scene: Scene, sums: Sums) -> dict[str, Any]:
 
 
 def block_size(scene: Scene, sampler: Source[Any]) -> int:
-    """Surfaces per block, bounded by memory and time; if possible twice an odd number of `counts.GROUP`.
+    """Surfaces per block, bounded by memory and time; if possible twice an odd number of `GROUP`.
 
     Whole groups, so that no generator of the counts is made for two blocks; an odd number of pairs, since
     with a multiple of eight the rows of the moments would share their places in the innermost cache.

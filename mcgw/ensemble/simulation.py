@@ -19,7 +19,7 @@ from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import CONFIDENCE, MANY, TOO_FEW, Spread, chebyshev, spread_of
 from mcgw.machine.process import Progress, told
-from mcgw.sampling.counts import GROUP
+from mcgw.sampling.block import GROUP
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene, storable, with_sampling
 

@@ -11,7 +11,7 @@ from mcgw.ensemble.simulation import forecast, without_rule
 from mcgw.errors import RunError, in_one_line
 from mcgw.jobs.blocks import Done, in_blocks
 from mcgw.machine.process import Progress, Signals, heed_signals, told
-from mcgw.sampling.counts import GROUP
+from mcgw.sampling.block import GROUP
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene
 from mcgw.store.ensembles import open_ensemble

@@ -1,13 +1,12 @@
 """From a scene to the sums of its surfaces: an ensemble is a matrix, a question is a matrix.
 
 ``cells``      the heights that touch, cut where a law of contact has a root (`spacing` says where else)
-``counts``     how many asperities fall into each cell, exactly
 ``moments``    sums over the uniforms of a cell (`philox`, `kernels`), or from their Gaussian limit
                (`crowds`): all that a surface keeps, as many of each cell as its `Layout` says
-``response``   physics as a sparse matrix: `series` on the cells and on a `tree` over them, put together to
-               rows that follow from each other
-``counted``    a block of surfaces = response @ moments, and the few asperities outside the cells; `samplers`
-               has the names of what is made so
+``response``   physics as a sparse matrix: series on the cells and on a `tree` over them, found in a `walk`,
+               put together to rows that follow from each other
+``counted``    how many asperities fall into each cell, exactly; a block of surfaces = response @ moments, and
+               the few asperities outside the cells; `samplers` has the names of what is made so
 ``direct``     all heights, or those that are given, in plain loops: the witness
 ``asperities`` the heights that were summed
 

@@ -6,9 +6,8 @@ from numpy.typing import NDArray
 from analytic.arrays import Array, Ints
 from mcgw.machine.process import check_memory
 from mcgw.sampling.block import Sampler
-from mcgw.sampling.counted import extra_heights, table_of
-from mcgw.sampling.counts import counts_of, generator
-from mcgw.sampling.direct import Direct, asperity_sums
+from mcgw.sampling.counted import counts_of, extra_heights, table_of
+from mcgw.sampling.direct import Direct, asperity_sums, generator
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, REST, uniforms
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.ensemble import promise_of

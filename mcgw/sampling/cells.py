@@ -22,9 +22,8 @@ from numpy.typing import NDArray
 from analytic import Grading, HeightLaw, PiecewiseSeries, bends
 from analytic.arrays import Array
 from analytic.quadrature import gauss_legendre
-from mcgw.machine.compiling import in_threads
 from mcgw.machine.process import kept
-from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, product
+from mcgw.sampling.kernels import chebyshev_transform, product
 from mcgw.sampling.spacing import refined, spaced
 from mcgw.sampling.stretches import SMALLEST, begins_and_breaks, losses
 from mcgw.scene.ensemble import EXACT
@@ -34,17 +33,15 @@ _RARE = 0.1  # asperities a surface that may be expected beyond the cells, on ei
 _CONVERGED = 1e-9  # a step of Newton whose square is nothing
 _SHORT, _MOST_HALVINGS = 16, 60  # terms for a grading on a cell, and how often it is cut to get there
 _DIGITS = 4.0  # of a height that coefficients without meaning may seem to be worth
-_EVEN, _LEAST = 4.0, 1 / 16  # see `evenness`
+_EVEN, _LEAST = 4.0, 1 / 16  # see `tolerances`
 _NARROW = 2.0**-6  # cells that are not cut because the modulus falls
 _TOGETHER = 64  # cells whose densities stay in the cache
-_MANY = 32  # times that many: worth another thread
 _CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
 
 _ORDER = 20
-NODES = chebyshev_points(_ORDER)
+NODES = chebyshev.chebpts1(_ORDER)
 TO_COEFFICIENTS = chebyshev_transform(NODES)
 _X, _W = gauss_legendre(20)
-_ONE = np.ones(1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,23 +86,19 @@ def mesh_of(scene: Scene, given: Sequence[float] = (), *, split: bool = True) ->
 def edges_before_grading(scene: Scene, given: Sequence[float] = (), *, split: bool = True) -> Array:
     """Return the edges of the cells of `mesh_of` before those of a grading with kinks; none: no cell."""
     law = scene.heights
-    low, high = _range(law, _RARE / scene.n_asperities, scene.lowest)
+    low, high = _range(law, _RARE / scene.n_asperities)
+    low = max(low, scene.lowest)
     if not low < high:
         return np.empty(0)
-    begins, breaks = begins_and_breaks(scene, low, high)
+    begins, breaks = np.array(scene.all_separations), np.empty(0)
+    if not scene.hertzian:
+        begins, breaks = begins_and_breaks(scene, low, high)
     marks = np.unique([low, *begins, *breaks, *bends(scene.modulus, low, high), *law.breaks, *given, high])
     marks = marks[(low <= marks) & (marks <= high)]
     if len(given):
         return refined(law, begins, marks)
     asked = (part.tobytes() for part in (begins, breaks, marks))
-    return _edges(law, scene.n_asperities if split else 0, *asked)
-
-
-@kept
-def _edges(law: HeightLaw, n: int, *asked: bytes) -> Array:
-    """Edges that suit the height law and the contact law, whatever the grading."""
-    begins, breaks, marks = (np.frombuffer(part) for part in asked)
-    return refined(law, begins, spaced(law, n, begins, breaks, marks))
+    return spaced(law, scene.n_asperities if split else 0, *asked)  # whatever the grading
 
 
 def cut(scene: Scene, mesh: Mesh, starts: Array) -> Mesh:
@@ -138,12 +131,14 @@ def no_cells(scene: Scene) -> Mesh:
     )
 
 
-def _range(law: HeightLaw, share: float, lowest: float) -> tuple[float, float]:
+@kept
+def _range(law: HeightLaw, share: float) -> tuple[float, float]:
     """Where the cells lie: at most this share of all heights on either side of them.
 
     Rounded to a sixteenth, so that it does not hang on the last digit of an inverse distribution.
     """
-    bottom, top = _rare_heights(law, min(share, 0.5))
+    rare = np.array(min(share, 0.5))
+    bottom, top = float(law.ppf(rare)), float(law.isf(rare))
     low, high = np.floor(16 * bottom) / 16, np.ceil(16 * top) / 16
     if low <= law.support[0]:
         low = law.support[0]
@@ -153,14 +148,7 @@ def _range(law: HeightLaw, share: float, lowest: float) -> tuple[float, float]:
         high = law.support[1]
         if high in law.singular:
             high -= _power_of_two_below(high - top)
-    return max(lowest, low), high
-
-
-@kept
-def _rare_heights(law: HeightLaw, share: float) -> tuple[float, float]:
-    """Heights that this share of all lies below, and above."""
-    rare = np.array(share)
-    return float(law.ppf(rare)), float(law.isf(rare))
+    return float(low), float(high)
 
 
 def _power_of_two_below(distance: float) -> float:
@@ -180,8 +168,8 @@ def _resolving(scene: Scene, edges: Array) -> Array:
         t = (1 + NODES) / 2 * chebyshev.chebval(NODES, stretch)
         e = grading(a[:, None] + t)
         tail = np.abs(product(TO_COEFFICIENTS, e.T))[_SHORT:].sum(axis=0)
-        share = evenness(grading, e)
-        rough = tail > EXACT * share * np.abs(e).max(axis=1) + height_noise(a, t, e)
+        share, noise = tolerances(grading, a, t, e)
+        rough = tail > EXACT * share * np.abs(e).max(axis=1) + noise
         least, changing = _least(e)  # next to a zero it falls as deep on every cell
         rough |= (share > _EVEN * least) & ~changing & (width > _NARROW)
         if not rough.any():
@@ -190,27 +178,25 @@ def _resolving(scene: Scene, edges: Array) -> Array:
     return edges
 
 
-def height_noise(a: Array | float, t: Array, e: Array) -> Array:
-    """Return what a steep grading `e` makes of the last digit of a height ``a + t``, over the last axis."""
-    widest = t.max(axis=-1)
-    return np.asarray(_DIGITS * np.spacing(np.abs(a) + widest) * np.ptp(e, axis=-1) / widest)
-
-
 def _steep(grading: Grading) -> bool:
     """Whether it may be, between its breaks or, if it is made of series, its kinks."""
     return not grading.smooth or isinstance(getattr(grading, "grading", grading), PiecewiseSeries)
 
 
-def evenness(grading: Grading, e: Array) -> Array:
-    """Share of the largest modulus `e` on a cell that errors are held against, over the last axis.
+def tolerances(grading: Grading, a: Array | float, t: Array, e: Array) -> tuple[Array, Array]:
+    """Share of the largest modulus on a cell that errors are held against; and noise of the modulus.
 
-    A single contact may sit where the modulus is least, and is to be as accurate as all others. 1 up to a
-    ratio of four, for gradings without steep places, and where the modulus changes its sign.
+    Of moduli `e` at heights ``a + t``, over the last axis. A single contact may sit where the modulus is
+    least, and is to be as accurate as all others. The share is 1 up to a ratio of four, for gradings without
+    steep places, and where the modulus changes its sign. The noise is what a steep grading makes of the last
+    digit of a height.
     """
-    if not _steep(grading):
-        return np.ones(e.shape[:-1])
-    least, changing = _least(e)
-    return np.asarray(np.where(changing, 1.0, np.clip(_EVEN * least, _LEAST, 1.0)))
+    widest, share = t.max(axis=-1), np.ones(e.shape[:-1])
+    noise = _DIGITS * np.spacing(np.abs(a) + widest) * np.ptp(e, axis=-1) / widest
+    if _steep(grading):
+        least, changing = _least(e)
+        share = np.where(changing, 1.0, np.clip(_EVEN * least, _LEAST, 1.0))
+    return share, noise
 
 
 def _least(e: Array) -> tuple[Array, NDArray[np.bool_]]:
@@ -222,20 +208,12 @@ def _least(e: Array) -> tuple[Array, NDArray[np.bool_]]:
 
 def _mass(law: HeightLaw, a: Array, t: Array) -> Array:
     """Probability between a and a + t, relative to the density at a: `t` has shape (cells, points)."""
-    return t * _densities(law, a, t, _X, _W)
-
-
-def _densities(law: HeightLaw, a: Array, t: Array, points: Array, weights: Array) -> Array:
-    """Weighted sums of the densities at a + points t, relative to that at a."""
     sums = np.empty(t.shape)
-
-    def weigh(first: int) -> None:
+    for first in range(0, len(a), _TOGETHER):
         some = slice(first, first + _TOGETHER)
-        logs = law.log_ratio(a[some, None, None], t[some, :, None] * points).reshape(-1, len(points))
-        sums[some] = product(np.exp(logs), weights).reshape(-1, t.shape[1])
-
-    in_threads(weigh, range(0, len(a), _TOGETHER), least=_MANY)
-    return sums
+        logs = law.log_ratio(a[some, None, None], t[some, :, None] * _X)
+        sums[some] = product(np.exp(logs), _W)
+    return t * sums
 
 
 def _stretch(law: HeightLaw, a: Array, width: Array, mass: Array) -> Array:
@@ -243,7 +221,7 @@ def _stretch(law: HeightLaw, a: Array, width: Array, mass: Array) -> Array:
     u = (1 + NODES) / 2
     t = width[:, None] * u
     for _ in range(8):  # the mass is nearly linear in t: quadratic convergence from the first step
-        step = (_mass(law, a, t) - u * mass[:, None]) / _densities(law, a, t, _ONE, _ONE)
+        step = (_mass(law, a, t) - u * mass[:, None]) / np.exp(law.log_ratio(a[:, None], t))
         t = t - step
         if np.all(np.abs(step) < _CONVERGED * t):
             break

@@ -1,5 +1,9 @@
 """Samplers that count before they draw: the numbers in the cells, their moments, and the product.
 
+The number in contact is binomial (fixed N) or Poisson. Given that number, those of the cells are
+multinomial: from the highest cell down, so that each probability is accurate however far into the tail.
+All are drawn exactly, by NumPy's generator.
+
 And asperities drawn one by one: those outside all cells, and all of them for the sampler ``tail``.
 """
 
@@ -13,11 +17,10 @@ from analytic import quantity_of
 from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.process import check_memory
-from mcgw.sampling.block import Layout, Sampler, Sums
+from mcgw.sampling.block import GROUP, Sampler, Sums
 from mcgw.sampling.cells import Mesh
-from mcgw.sampling.counts import Counts, contacts_above, counts_of
-from mcgw.sampling.direct import asperity_sums
-from mcgw.sampling.moments import OneByOne
+from mcgw.sampling.direct import COUNTS, asperity_sums, generator
+from mcgw.sampling.moments import Layout, OneByOne
 from mcgw.sampling.philox import EXTRAS, centred, made_for
 from mcgw.sampling.response.response import Response
 from mcgw.sampling.stretches import stretches_of
@@ -27,7 +30,45 @@ if TYPE_CHECKING:
     from mcgw.sampling.own_radii import Families, RadiusTable
 
 _HIGH, _LOW, _RADII = 0, 1, 2  # streams, and what leads from one of heights to that of their radii
+_WORDS = 12  # numbers in memory for an asperity drawn by itself
+_RARE = 1e-8  # probability below which binomial and Poisson differ less than 1 - p is rounded
 _MANY, _BYTES = 10**7, 100  # heights that are worth asking whether there is room; bytes of one
+
+
+@dataclass(frozen=True)
+class Counts:
+    """Numbers of asperities of a block of surfaces."""
+
+    cells: Ints  # in each cell, shape (cells, surfaces)
+    low_extras: Ints  # in contact, below all cells, shape (surfaces,)
+    high_extras: Ints  # and above them
+
+
+def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
+    """Draw how many asperities of each cell the surfaces `first` ... `first + n - 1` have.
+
+    A pure function of the seed of the scene and the number of the surface.
+    """
+    probability = np.concatenate([[mesh.low_extras], mesh.probability, [mesh.high_extras]])
+    n_asperities, touching = scene.n_asperities, float(probability.sum())
+    p = min(touching, 1.0)
+    mantissa, exponent = np.frexp(probability[::-1] / (touching or 1.0))
+    # To 44 bits: NumPy draws from the smaller side, and of two like cells a last digit would decide which.
+    falling = np.ldexp(np.round(mantissa * 2.0**44) / 2.0**44, exponent)
+    groups = range(first // GROUP, -(-(first + n) // GROUP))
+    drawn = []
+    for group in groups:
+        rng = generator(scene.seed, COUNTS, group)
+        if scene.count == "fixed" and p >= _RARE:
+            contacts = rng.binomial(n_asperities, p, GROUP)
+        else:
+            contacts = rng.poisson(n_asperities * p, GROUP)
+            if scene.count == "fixed":
+                contacts = np.minimum(contacts, n_asperities)
+        drawn.append(rng.multinomial(contacts, falling))
+    skip = first - groups[0] * GROUP
+    numbers = np.ascontiguousarray(np.concatenate(drawn)[skip : skip + n, ::-1].T)
+    return Counts(numbers[1:-1], numbers[0], numbers[-1])
 
 
 @dataclass(frozen=True)
@@ -39,9 +80,15 @@ class Counted(Sampler):
     table: "RadiusTable | None" = None  # of radii, where summits have their own
 
     @property
-    def moments(self) -> int:
-        """Moments of a surface."""
-        return int(self.response.layout.starts[-1])
+    def words(self) -> int:
+        """Return the memory for one surface, in numbers."""
+        moments = int(self.response.layout.starts[-1])
+        return moments + 2 * self.mesh.size + _WORDS * int(min(self.outside, 1e12))
+
+    @property
+    def outside(self) -> float:
+        """Asperities that are expected to be drawn by themselves."""
+        return self.scene.n_asperities * (self.mesh.low_extras + self.mesh.high_extras)
 
     @property
     def distance(self) -> float:
@@ -51,7 +98,8 @@ class Counted(Sampler):
     @property
     def draws(self) -> float:
         """Numbers that are expected to be drawn for a surface."""
-        return self.outside + self.drawing.draws(self.inside, self.response.layout)
+        inside = self.scene.n_asperities * float(self.mesh.probability.sum())
+        return self.outside + self.drawing.draws(inside, self.response.layout)
 
     def block(self, first: int, n: int) -> Sums:
         """Results of surfaces `first` ... `first + n - 1`."""
@@ -131,27 +179,35 @@ def extra_heights(
     number = int(counts.high_extras.sum() + counts.low_extras.sum())
     if number > _MANY:
         check_memory(f"ensemble.sampler: to list {number:.4g} heights one by one", _BYTES * number)
-    edge = float(mesh.edges[-1]) if mesh.size else scene.lowest
-
-    def listed(stream: int, numbers: Ints, heights: Array) -> Array:
-        surfaces = np.repeat(first + np.arange(len(numbers)), numbers)
-        columns = [surfaces, heights, np.ones(len(heights))]
+    sides, parts = [(_HIGH, counts.high_extras)], []
+    if counts.low_extras.any():
+        sides.insert(0, (_LOW, counts.low_extras))
+    for stream, numbers in sides:
+        u = (1 + _centred_pairs(np.uint64(scene.seed), first, stream, numbers)) / 2
+        u = (u[::2] - 0.5 / 2**32) + u[1::2] / 2**32  # of 64 bits: 32 would cut the tail of 1e10 asperities
+        if stream == _HIGH:
+            heights = law.isf(u, float(mesh.edges[-1]) if mesh.size else scene.lowest)
+        else:
+            bottom = float(mesh.edges[0])
+            least = float(law.cdf(np.array(scene.lowest)) / law.cdf(np.array(bottom)))
+            heights = law.ppf(least + (1 - least) * u, bottom)
+        columns = [np.repeat(first + np.arange(len(numbers)), numbers), heights, np.ones(len(heights))]
         if table:
             pairs = _centred_pairs(np.uint64(scene.seed), first, stream + _RADII, numbers)
             two = np.ascontiguousarray(pairs.reshape(-1, 2).T)
             columns.append(table.root_ratios(np.ascontiguousarray(heights), *two) ** 2)
-        return np.column_stack(columns)
-
-    heights = law.isf(_wide_uniforms(scene.seed, first, _HIGH, counts.high_extras), edge)
-    rows = listed(_HIGH, counts.high_extras, heights)
-    if not counts.low_extras.any():
-        return rows
-    bottom = float(mesh.edges[0])
-    least = float(law.cdf(np.array(scene.lowest)) / law.cdf(np.array(bottom)))
-    share = least + (1 - least) * _wide_uniforms(scene.seed, first, _LOW, counts.low_extras)
-    low = listed(_LOW, counts.low_extras, law.ppf(share, bottom))
-    rows = np.concatenate([low, rows])
+        parts.append(np.column_stack(columns))
+    if len(parts) == 1:
+        return parts[0]
+    rows = np.concatenate(parts)
     return np.asarray(rows[np.argsort(rows[:, 0], kind="stable")])
+
+
+def contacts_above(counts: Array, cells: Ints) -> Array:
+    """Add up numbers in cells (cells, surfaces) from some lowest ones on: (surfaces, lowest ones)."""
+    above = np.zeros((len(counts) + 1, counts.shape[1]))
+    np.cumsum(counts[::-1], axis=0, out=above[-2::-1])
+    return np.ascontiguousarray(above[cells].T)
 
 
 def table_of(scene: Scene, lowest: float) -> "RadiusTable | None":
@@ -161,12 +217,6 @@ def table_of(scene: Scene, lowest: float) -> "RadiusTable | None":
     from mcgw.sampling.own_radii import radius_table  # for those scenes alone
 
     return radius_table(scene.summits, lowest)
-
-
-def _wide_uniforms(seed: int, first: int, stream: int, numbers: Ints) -> Array:
-    """Uniforms of 64 bits: those of 32 would cut the tail of 1e10 asperities."""
-    u = (1 + _centred_pairs(np.uint64(seed), first, stream, numbers)) / 2
-    return np.asarray((u[::2] - 0.5 / 2**32) + u[1::2] / 2**32)
 
 
 @njit(cache=True)

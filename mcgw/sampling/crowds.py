@@ -35,12 +35,11 @@ from analytic import quantity_of
 from analytic.arrays import Array, Ints
 from analytic.quadrature import gauss_legendre
 from mcgw.machine.compiling import njit
-from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.direct import asperity_sums
-from mcgw.sampling.moments import OneByOne
+from mcgw.sampling.kernels import product
+from mcgw.sampling.moments import Layout, OneByOne
 from mcgw.sampling.philox import MOMENTS, centred, made_for
-from mcgw.sampling.rules import product
 from mcgw.scene.scene import Scene
 
 CROWDED = 256  # asperities in a cell, from which its moments count as Gaussian

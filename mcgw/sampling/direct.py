@@ -14,11 +14,15 @@ from analytic import quantity_of
 from analytic.arrays import Array
 from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Sampler, Sums
-from mcgw.sampling.counts import generator
 from mcgw.scene.scene import Scene
 
-_PURPOSE = 1  # of NumPy's generator; the counts have 0
+COUNTS, _HEIGHTS = 0, 1  # purposes of NumPy's generator
 _PIECE = 2**20  # heights at a time
+
+
+def generator(seed: int, purpose: int, number: int) -> np.random.Generator:
+    """NumPy's generator for one purpose and number, a pure function of these and the seed."""
+    return np.random.Generator(np.random.Philox(key=seed, counter=[0, 0, number, purpose]))
 
 
 @dataclass(frozen=True)
@@ -43,7 +47,7 @@ class Direct(Sampler):
     def asperities(self, number: int) -> Iterator[tuple[Array, Array | None]]:
         """Heights of all asperities of a surface, and ratios of their radii, some at a time."""
         scene = self.scene
-        rng = generator(scene.seed, _PURPOSE, number)
+        rng = generator(scene.seed, _HEIGHTS, number)
         left = scene.n_asperities if scene.count == "fixed" else int(rng.poisson(scene.n_asperities))
         most = left if scene.as_measured else _PIECE
         while left:

@@ -64,7 +64,9 @@ def _orders(scene: Scene, edges: Array) -> tuple[Ints, Ints]:
     """Moments of each cell, for all quantities that have one power of the radius."""
     if not edges.size:
         return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
-    begins, _ = begins_and_breaks(scene, float(edges[0]), float(edges[-1]))
+    begins = np.array(scene.all_separations)
+    if not scene.hertzian:
+        begins, _ = begins_and_breaks(scene, float(edges[0]), float(edges[-1]))
     return expected_orders(scene.heights, scene.n_asperities, begins, edges)
 
 

@@ -1,9 +1,10 @@
-"""Sums of Chebyshev polynomials over the uniforms of one cell: the innermost loops, written by a template.
+"""Sums of Chebyshev polynomials over the uniforms of one cell, and products of matrices: the innermost loops.
 
-They know no physics, and have no branch, no exponential and no logarithm. Of each number x = 2u - 1 they
-compute T_1 ... T_5 alone, each in a variable of its own: since ``2 T_m T_k = T_{m+k} + T_{m-k}``, the sums of
-the products of T_5 and T_1 ... T_5 stand for the orders 6 ... 10, those with T_10 for 11 ... 15, and so on
-(`unfold`). A loop over the orders would be two to three times slower. The one for seven T_j and one f T_j::
+Those over uniforms are written by a template. They know no physics, and have no branch, no exponential and
+no logarithm. Of each number x = 2u - 1 they compute T_1 ... T_5 alone, each in a variable of its own: since
+``2 T_m T_k = T_{m+k} + T_{m-k}``, the sums of the products of T_5 and T_1 ... T_5 stand for the orders
+6 ... 10, those with T_10 for 11 ... 15, and so on (`unfold`). A loop over the orders would be two
+to three times slower. The one for seven T_j and one f T_j::
 
     for i in range(n):
         t1 = w[i]
@@ -27,11 +28,14 @@ A thread's workspace is one array, since each array that a function is given cos
              of 1024 u      32 of them      32 of them
 """
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.polynomial import chebyshev
 
+from analytic.arrays import Array
 from mcgw.machine.compiling import njit
 
 BUFFER = 1024  # uniforms at a time: they stay in the innermost cache
@@ -97,3 +101,46 @@ def unfold(w: Any, first: Any, orders: Any) -> None:
     """Make sums of polynomials of `orders` sums of products, which begin at ``w[first]``."""
     for j in range(6, orders):
         w[first + j] = 2.0 * w[first + j] - w[first + 2 * ((j - 1) // 5 * 5) - j]
+
+
+def chebyshev_transform(points: Array) -> Array:
+    """Return the matrix from values at the Chebyshev points to coefficients of the series, shape (n, n)."""
+    n = len(points)
+    matrix = np.asarray(chebyshev.chebvander(points, n - 1).T * (2 / n), dtype=np.float64)
+    matrix[0] /= 2
+    return matrix
+
+
+def product(a: Array, b: Array) -> Array:
+    """Return the product of two matrices: the same bits for any number of threads and jobs.
+
+    Libraries of linear algebra share it out to as many threads as there are; here each sum is taken in the
+    order of its terms.
+
+    Parameters
+    ----------
+    a, b : ndarray
+        Shape (..., n) and (n, m), or (n,).
+
+    Returns
+    -------
+    ndarray
+        Shape (..., m), or (...).
+    """
+    rows = np.ascontiguousarray(a.reshape(math.prod(a.shape[:-1]), a.shape[-1]))
+    columns = np.ascontiguousarray(b.reshape(len(b), math.prod(b.shape[1:])))
+    result = np.empty((len(rows), columns.shape[1]))
+    multiply(rows, columns, result)
+    return result.reshape(a.shape[:-1] + b.shape[1:])
+
+
+@njit(cache=True, fastmath={"contract"})
+def multiply(a: Any, b: Any, result: Any) -> None:
+    """Write `product` of two matrices, in compiled loops."""
+    for i in range(a.shape[0]):
+        for j in range(b.shape[1]):
+            result[i, j] = 0.0
+        for k in range(a.shape[1]):
+            x = a[i, k]
+            for j in range(b.shape[1]):
+                result[i, j] += x * b[k, j]

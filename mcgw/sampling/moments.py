@@ -8,7 +8,7 @@ of Chebyshev polynomials determine every smooth law of the height, and every smo
 root of the distance from the cell's start (`mcgw.sampling.response.response`).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
@@ -19,7 +19,6 @@ from numba import get_num_threads
 
 from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import in_threads, njit
-from mcgw.sampling.block import Layout
 from mcgw.sampling.kernels import BUFFER, PLAIN, ROOTED, TOGETHER, WORDS, add_uniforms, unfold
 from mcgw.sampling.philox import CELLS, centred
 from mcgw.sampling.spacing import price
@@ -27,6 +26,42 @@ from mcgw.sampling.spacing import price
 _START = 80.0  # asperities that take as long to draw as a cell takes to begin
 _ALONE = 1e6  # asperities' work that a thread does before another one has begun
 _PIECE = 512 * 512  # a plain sum of so many terms is good to 1e-14; beyond, it is compensated
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Which moments a surface keeps."""
+
+    plain: Ints  # how many T_j each cell has
+    rooted: Ints  # how many R_j
+
+    @property
+    def sizes(self) -> Ints:
+        """Moments of each cell."""
+        return self.plain + self.rooted
+
+    @property
+    def starts(self) -> Ints:
+        """First row of each cell, and the number of all rows."""
+        return np.concatenate([[0], np.cumsum(self.plain + self.rooted)])
+
+    def at_most(self, other: "Layout") -> "Layout":
+        """No more than another one has."""
+        return Layout(np.minimum(self.plain, other.plain), np.minimum(self.rooted, other.rooted))
+
+    @classmethod
+    def covering(cls, layouts: Sequence["Layout"]) -> "Layout":
+        """Return the moments that any of some layouts of the same cells has."""
+        return cls(
+            np.max([layout.plain for layout in layouts], axis=0),
+            np.max([layout.rooted for layout in layouts], axis=0),
+        )
+
+    def rows_of(self, part: "Layout") -> Ints:
+        """Where the rows of a layout lie in this one, which covers it."""
+        first = np.stack([self.starts[:-1], self.starts[:-1] + self.plain], axis=1).ravel()
+        size = np.stack([part.plain, part.rooted], axis=1).ravel()
+        return np.repeat(first - np.cumsum(size) + size, size) + np.arange(size.sum())
 
 
 @njit(inline="always")

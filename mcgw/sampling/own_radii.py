@@ -25,9 +25,9 @@ from analytic.arrays import Array
 from analytic.curvature import MEAN_CURVATURE
 from analytic.quadrature import gauss_legendre
 from mcgw.machine.compiling import njit
-from mcgw.sampling.block import Layout
+from mcgw.sampling.kernels import chebyshev_transform, product
+from mcgw.sampling.moments import Layout
 from mcgw.sampling.response.response import Response, matrix_of
-from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, product
 
 _PANELS = 4  # in a unit of height
 _OCTAVES, _FINE, _PARTS = 64, 8, 4  # of a uniform; those that are cut, and into how many parts
@@ -60,7 +60,7 @@ def radius_table(curvature: RandomCurvature, lowest: float) -> RadiusTable:
     low = max(lowest, float(heights.ppf(np.array(_NEVER))))
     high = max(float(heights.isf(np.array(_NEVER))), low)
     first, last = np.floor(_PANELS * low), np.floor(_PANELS * high) + 1
-    points = chebyshev_points(_IN_HEIGHT)
+    points = chebyshev.chebpts1(_IN_HEIGHT)
     s = (np.arange(first, last)[:, None] + (1 + points) / 2) / _PANELS
     roots = np.sqrt(MEAN_CURVATURE / _inverted(curvature.alpha, s.ravel(), _shares())).reshape(
         *s.shape, 2 * _PIECES, _IN_SHARE
@@ -78,7 +78,7 @@ def radius_table(curvature: RandomCurvature, lowest: float) -> RadiusTable:
 def _powers(n: int) -> Array:
     """From values at Chebyshev points to coefficients of powers."""
     of_series = np.stack([np.pad(chebyshev.cheb2poly(row), (0, n))[:n] for row in np.eye(n)], axis=1)
-    return product(np.asarray(of_series, dtype=np.float64), chebyshev_transform(chebyshev_points(n)))
+    return product(np.asarray(of_series, dtype=np.float64), chebyshev_transform(chebyshev.chebpts1(n)))
 
 
 def _shares() -> Array:
@@ -91,7 +91,7 @@ def _shares() -> Array:
         ]
     )
     width = np.concatenate([2.0 ** -(fine // _PARTS + 2.0) / _PARTS, low[_FINE * _PARTS :]])
-    return np.asarray(low[:, None] + width[:, None] * (1 + chebyshev_points(_IN_SHARE)) / 2)
+    return np.asarray(low[:, None] + width[:, None] * (1 + chebyshev.chebpts1(_IN_SHARE)) / 2)
 
 
 def _inverted(alpha: float, s: Array, share: Array) -> Array:

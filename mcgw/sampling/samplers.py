@@ -12,8 +12,8 @@ name            cells        numbers in them  moments     for
 
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,13 +22,10 @@ from mcgw.sampling.block import Sampler
 from mcgw.sampling.cells import Mesh, cut, mesh_of, no_cells
 from mcgw.sampling.counted import Counted, table_of
 from mcgw.sampling.direct import Direct
-from mcgw.sampling.response.response import Response, parts_of, response_of
+from mcgw.sampling.response.response import parts_of, response_of
 from mcgw.sampling.response.walk import UnresolvedError
 from mcgw.scene.ensemble import promise_of
 from mcgw.scene.scene import Scene, storable
-
-if TYPE_CHECKING:
-    from mcgw.sampling.own_radii import Families
 
 _GAUSSIAN, _WORTH = 300, 1.5  # asperities that a crowded cell takes as long as; times that much faster
 _CUTS = 16  # in four, of a cell on which the modulus, and the law of contact under it, are not resolved
@@ -105,15 +102,26 @@ def cells_of(scene: Scene, given: Sequence[float] = ()) -> Counted:
 
 
 def _counted(name: str, scene: Scene, mesh: Mesh) -> Counted:
-    """Return a sampler on a mesh, with radii where the scene has them."""
-    mesh, response = _resolved(scene, mesh)
-    if not isinstance(response, Response):
-        from mcgw.sampling.weighted_sums import WithRadii
+    """Return a sampler on a mesh, cut where the law of contact bends with the modulus.
 
-        table = table_of(scene, scene.lowest)
-        assert table is not None
-        return Counted(name, scene, mesh, response, WithRadii(mesh, table, response), table)
-    return Counted(name, scene, mesh, response)
+    Its response is for all that moments can tell; contacts are counted.
+    """
+    names, cuts = _summed(scene.quantities), 0
+    while True:
+        try:
+            if scene.summits is None or not names:
+                return Counted(name, scene, mesh, response_of(scene, mesh, names))
+            from mcgw.sampling.own_radii import Families
+            from mcgw.sampling.weighted_sums import WithRadii
+
+            response = Families.of(names, partial(response_of, scene, mesh))
+            table = table_of(scene, scene.lowest)
+            assert table is not None
+            return Counted(name, scene, mesh, response, WithRadii(mesh, table, response), table)
+        except UnresolvedError as error:
+            if cuts == _CUTS:
+                raise
+            mesh, cuts = cut(scene, mesh, error.starts), cuts + 1
 
 
 def aggregate_of(scene: Scene, crowded: int | None = None, distance: float = np.nan) -> Counted:
@@ -124,12 +132,12 @@ def aggregate_of(scene: Scene, crowded: int | None = None, distance: float = np.
     """
     from mcgw.sampling.crowds import CROWDED, VARYING, Crowds  # as above
 
-    mesh, response = _resolved(scene, mesh_of(scene, split=False))
-    varying = response.layout
+    every = _counted("aggregate", scene, mesh_of(scene, split=False))
+    varying = every.response.layout
     with suppress(UnresolvedError):  # all of them vary where cells are too wide to tell
-        needed = parts_of(scene, mesh, _summed(scene.quantities), VARYING)
-        varying = needed.layout.at_most(response.layout)
-    return Counted("aggregate", scene, mesh, response, drawing=Crowds(varying, crowded or CROWDED, distance))
+        needed = parts_of(scene, every.mesh, _summed(scene.quantities), VARYING)
+        varying = needed.layout.at_most(varying)
+    return replace(every, drawing=Crowds(varying, crowded or CROWDED, distance))
 
 
 _MAKERS: dict[str, Callable[[Scene], Sampler]] = {
@@ -138,25 +146,6 @@ _MAKERS: dict[str, Callable[[Scene], Sampler]] = {
     "cells": cells_of,
     "aggregate": aggregate_of,
 }
-
-
-def _resolved(scene: Scene, mesh: Mesh) -> "tuple[Mesh, Response | Families]":
-    """Cut the mesh where the law of contact bends with the modulus.
-
-    Return it and its response for all that moments can tell; contacts are counted.
-    """
-    names, cuts = _summed(scene.quantities), 0
-    while True:
-        try:
-            if scene.summits is None or not names:
-                return mesh, response_of(scene, mesh, names)
-            from mcgw.sampling.own_radii import Families
-
-            return mesh, Families.of(names, partial(response_of, scene, mesh))
-        except UnresolvedError as error:
-            if cuts == _CUTS:
-                raise
-            mesh, cuts = cut(scene, mesh, error.starts), cuts + 1
 
 
 def _summed(quantities: Iterable[str]) -> tuple[str, ...]:

@@ -7,14 +7,13 @@ geometrically from a separation upwards, and how fast, and to how many, is chose
 """
 
 from bisect import bisect_left
-from dataclasses import dataclass
-from functools import cache
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic import HeightLaw
 from analytic.arrays import Array, Ints
+from mcgw.machine.process import kept
 
 DIGITS = 11.4  # that moments must give for values to the last digit: of a law, or of the sum of a surface
 SURE = 400  # so many expected contacts are never fewer than half
@@ -30,25 +29,33 @@ _TIE = 1e-9  # share of a price that is no difference
 _CELL, _TWO_MORE, _FIVE_MORE, _ROOT, _FIVE_ROOTS_MORE = 250.0, 0.1, 0.25, 0.3, 0.2
 
 
-def _widest(law: HeightLaw, a: float, distance: float) -> float:
-    """How wide the law of heights lets a cell above `a` be: less, where a law of contact bends as well."""
-    width = law.span(a)
-    if distance < _FAR * width:
-        width *= _NARROWER
-    for end in law.singular:
-        width = min(width, a - end if end < a else (end - a) / 2)
-    return width
+@kept
+def spaced(law: HeightLaw, n: int, *asked: bytes) -> Array:
+    """Return edges between marks such that drawing costs the least, for surfaces of `n` asperities.
 
-
-def spaced(law: HeightLaw, n: int, begins: Array, breaks: Array, marks: Array) -> Array:
-    """Return marks, and cells where contacts begin or change their law such that drawing costs the least."""
+    Asked are heights where contacts begin, where they change their law, and marks; no asperities ask for
+    the fewest cells.
+    """
+    begins, breaks, marks = (np.frombuffer(part) for part in asked)
     low = marks[:-1]
     k = np.searchsorted(begins, low)
     root = begins[np.minimum(k, len(begins) - 1)] == low
     before = low - np.concatenate([[-np.inf], begins])[k]
-    some = root | (np.isin(low, breaks) & np.isfinite(before))
-    gaps = Gaps(low[some], marks[1:][some], before[some], root[some])
-    return np.unique(np.concatenate([marks, cuts(law, n, gaps)]))
+    gaps = np.stack([low, marks[1:], before, root])[:, root | (np.isin(low, breaks) & np.isfinite(before))]
+    halvings = np.log2(gaps[1] - gaps[0]) - np.log2(gaps[2])
+    fewest = 1 + np.ceil(np.maximum(halvings, 0.0) - 1e-9).astype(np.int64)
+    found = [marks]
+    for number in np.unique(fewest).tolist():
+        some = gaps[:, fewest == number]
+        if number == 1:  # might two cells cost less, if an asperity in them cost the least there is: 1?
+            low, high, before, root = some
+            above, beyond = law.sf(low), law.sf(high)
+            two = 2 * _CELL + n * (above - beyond)
+            some = some[
+                :, _prices(law, n, root > 0, low, high - low, before, above, beyond) > two * (1 - _TIE)
+            ]
+        found.append(_cut(law, n, some, number))
+    return refined(law, begins, np.unique(np.concatenate(found)))
 
 
 def refined(law: HeightLaw, begins: Array, marks: Array) -> Array:
@@ -56,8 +63,12 @@ def refined(law: HeightLaw, begins: Array, marks: Array) -> Array:
     lows, edges = [-np.inf, *begins.tolist()], marks[:1].tolist()
     for mark in marks[1:].tolist():
         while (a := edges[-1]) < mark:
-            distance, room = a - lows[bisect_left(lows, a) - 1], mark - a
-            widest = min(distance, _widest(law, a, distance))
+            distance, room, widest = a - lows[bisect_left(lows, a) - 1], mark - a, law.span(a)
+            if distance < _FAR * widest:  # where a law of contact bends as well
+                widest *= _NARROWER
+            for end in law.singular:
+                widest = min(widest, a - end if end < a else (end - a) / 2)
+            widest = min(distance, widest)
             if room <= widest * (1 + _ROUNDING):
                 edges.append(mark)
             else:
@@ -65,82 +76,22 @@ def refined(law: HeightLaw, begins: Array, marks: Array) -> Array:
     return np.array(edges)
 
 
-@dataclass(frozen=True)
-class Gaps:
-    """Heights from separations, or from breaks of the contact law, to the next ones: one an array element."""
+def _cut(law: HeightLaw, n: int, gaps: Array, fewest: int) -> Array:
+    """Cut gaps that need so many cells: arrays are (gaps, growths, cells), the highest cell first.
 
-    low: Array  # where each begins
-    high: Array  # and ends
-    before: Array  # distance from `low` to the separation below, infinite if there is none
-    root: NDArray[np.bool_]  # whether contacts begin at `low`
-
-    @property
-    def fewest(self) -> Ints:
-        """Cells that each takes if they are as wide as they may be."""
-        halvings = np.log2(self.high - self.low) - np.log2(self.before)
-        return np.asarray(1 + np.ceil(np.maximum(halvings, 0.0) - 1e-9), dtype=np.int64)
-
-    def take(self, which: NDArray[np.bool_]) -> "Gaps":
-        """Return some of them."""
-        return Gaps(self.low[which], self.high[which], self.before[which], self.root[which])
-
-
-@dataclass(frozen=True)
-class _Cells:
-    """Cells that might be: starts, widths, distances to the root below, shares of heights above both ends."""
-
-    start: Array
-    width: Array
-    distance: Array
-    above: Array
-    beyond: Array
-
-    @property
-    def allowed(self) -> NDArray[np.bool_]:
-        """Whether they are no wider than their distance to the next separation below."""
-        return np.asarray(self.width <= self.distance * (1 + 1e-9))
-
-
-def cuts(law: HeightLaw, n: int, gaps: Gaps) -> Array:
-    """Return where to cut the gaps, for surfaces of `n` asperities; none asks for the fewest cells.
-
-    No cell is wider than its distance to the nearest separation below.
+    Gaps have the rows low, high, distance from `low` to the separation below, infinite if there is none, and
+    whether contacts begin at `low`.
     """
-    found, fewest = [np.empty(0)], gaps.fewest
-    for number in np.unique(fewest).tolist():
-        some = gaps.take(fewest == number)
-        if number == 1:
-            some = some.take(_worth_cutting(law, n, some))
-        found.append(_cut(law, n, some, number))
-    return np.concatenate(found)
-
-
-def _worth_cutting(law: HeightLaw, n: int, gaps: Gaps) -> NDArray[np.bool_]:
-    """Whether two cells might cost less than one, if an asperity in them cost the least there is: 1."""
-    above, beyond = law.sf(gaps.low), law.sf(gaps.high)
-    whole = _Cells(gaps.low, gaps.high - gaps.low, gaps.before, above, beyond)
-    two = 2 * _CELL + n * (above - beyond)
-    return np.asarray(_prices(law, n, whole, gaps.root) > two * (1 - _TIE))
-
-
-def _cut(law: HeightLaw, n: int, gaps: Gaps, fewest: int) -> Array:
-    """Cut gaps that need so many cells: arrays are (gaps, growths, cells), the highest cell first."""
-    low, high, before = (part[:, None, None] for part in (gaps.low, gaps.high, gaps.before))
-    root = gaps.root[:, None, None]
-    length, rungs = high - low, _rungs(fewest + _MORE)
+    low, high, before, root = gaps[:, :, None, None]
+    length, steps = high - low, np.arange(fewest + _MORE)
+    rungs = np.array([np.cumprod(np.where(steps, 1 / growth, 1.0)) for growth in _GROWTHS])
     heights = low + length * rungs
     above, least = law.sf(heights), law.sf(low)
-    upper = _Cells(
-        start=heights[..., 1:],
-        width=length * -np.diff(rungs),
-        distance=length * rungs[:, 1:] + np.where(root, 0.0, before),
-        above=above[..., 1:],
-        beyond=above[..., :-1],
-    )
-    lowest = _Cells(low, length * rungs[:, fewest - 1 :], before, least, above[..., fewest - 1 :])
-    uppers = np.cumsum(np.where(upper.allowed, _prices(law, n, upper, np.False_), np.inf), axis=2)
-    uppers = np.concatenate([np.zeros((*uppers.shape[:2], 1)), uppers], axis=2)[..., fewest - 1 :]
-    prices = uppers + np.where(lowest.allowed, _prices(law, n, lowest, root), np.inf)
+    distance = length * rungs[:, 1:] + np.where(root > 0, 0.0, before)
+    ends = heights[..., 1:], length * -np.diff(rungs), distance, above[..., 1:], above[..., :-1]
+    upper = np.insert(_prices(law, n, np.False_, *ends), 0, 0.0, axis=2)
+    lowest = low, length * rungs[:, fewest - 1 :], before, least, above[..., fewest - 1 :]
+    prices = np.cumsum(upper, axis=2)[..., fewest - 1 :] + _prices(law, n, root > 0, *lowest)
     prices = prices.reshape(len(prices), len(_GROWTHS) * (_MORE + 1))
     cheapest = np.argmax(prices <= prices.min(axis=1, keepdims=True, initial=np.inf) * (1 + _TIE), axis=1)
     growth, more = np.divmod(cheapest, _MORE + 1)  # the first one of the cheapest: rounding breaks no tie
@@ -148,29 +99,40 @@ def _cut(law: HeightLaw, n: int, gaps: Gaps, fewest: int) -> Array:
     return np.asarray(chosen[:, 1:][np.arange(1, fewest + _MORE) < (fewest + more)[:, None]])
 
 
-@cache
-def _rungs(most: int) -> Array:
-    """Upper edges of so many cells in a gap of length 1 for each growth, the highest first."""
-    return np.array([np.cumprod([1.0, *[1 / growth] * (most - 1)]) for growth in _GROWTHS])
+def _prices(law: HeightLaw, n: int, root: Any, *cells: Array) -> Array:
+    """Return what the asperities of a surface cost in each of some `cells`, as `_orders` has them.
+
+    Infinite where a cell is wider than its distance to the nearest separation below.
+    """
+    _, width, distance, above, beyond = cells
+    prices = _CELL + n * (above - beyond) * price(*_orders(law, n, root, *cells))
+    return np.where(width <= distance * (1 + 1e-9), prices, np.inf)
 
 
-def _prices(law: HeightLaw, n: int, cells: _Cells, root: NDArray[np.bool_] | np.bool_) -> Array:
-    """Return what the asperities of a surface cost in each cell; contacts begin where it starts, or not."""
-    plain, rooted = _orders(law, n, cells, root)
-    return np.asarray(_CELL + n * (cells.above - cells.beyond) * price(plain, rooted))
+def _orders(
+    law: HeightLaw,
+    n: int,
+    root: Any,
+    start: Array,
+    width: Array,
+    distance: Array,
+    above: Array,
+    beyond: Array,
+) -> tuple[Array, Array]:
+    """How many T_j and R_j each cell should need: no whole numbers; contacts begin where it starts, or not.
 
-
-def _orders(law: HeightLaw, n: int, cells: _Cells, root: NDArray[np.bool_] | np.bool_) -> tuple[Array, Array]:
-    """How many T_j and R_j each cell should need: no whole numbers."""
+    Of cells the distance to the root below, and the shares of heights above both ends.
+    """
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        bend = np.nan_to_num(np.abs(law.log_ratio(cells.start, cells.width)), nan=np.inf)
+        bend = np.nan_to_num(np.abs(law.log_ratio(start, width)), nan=np.inf)
         # Of a surface's sum, rather than of the law, where so many touch that it is sure to be large.
-        touching, expected = n * cells.above, n * (cells.above - cells.beyond)
-        reach = np.where(np.isfinite(cells.distance), cells.distance, 0.0) + cells.width
-        share = np.log10(np.where(touching > SURE, expected / touching * np.sqrt(reach), 1.0))
-        plain = (DIGITS + share) / _rate(np.minimum(1 + 2 * cells.distance / cells.width, 2 / bend))
-        rooted = np.where(root, 1 + (DIGITS + share) / _rate(2 / bend), 0.0)
-    return plain, rooted
+        touching, expected = n * above, n * (above - beyond)
+        reach = np.where(np.isfinite(distance), distance, 0.0) + width
+        digits = DIGITS + np.log10(np.where(touching > SURE, expected / touching * np.sqrt(reach), 1.0))
+        # A series gains these digits a term, with the nearest singularity of its variable at -z.
+        z = [np.clip(z, 1.05, 1e6) for z in (np.minimum(1 + 2 * distance / width, 2 / bend), 2 / bend)]
+        plain, rooted = (digits / np.log10(z + np.sqrt(z * z - 1)) for z in z)
+    return plain, np.where(root, 1 + rooted, 0.0)
 
 
 def expected_orders(law: HeightLaw, n: int, begins: Array, edges: Array) -> tuple[Ints, Ints]:
@@ -182,24 +144,13 @@ def expected_orders(law: HeightLaw, n: int, begins: Array, edges: Array) -> tupl
     k = np.searchsorted(begins, low)
     before = low - np.concatenate([[-np.inf], begins])[k]
     root = np.append(begins, np.inf)[k] == low
-    cells = _Cells(low, np.diff(edges), before, above[:-1], above[1:])
-    plain, rooted = (np.maximum(np.ceil(x), 0.0) for x in _orders(law, n, cells, root))
+    orders = _orders(law, n, root, low, np.diff(edges), before, above[:-1], above[1:])
+    plain, rooted = (np.maximum(np.ceil(x), 0.0) for x in orders)
     return np.maximum(plain, 1.0).astype(np.int64), rooted.astype(np.int64)
 
 
 def price(plain: Array | Ints, rooted: Array | Ints) -> Array:
     """Return what an asperity costs that gives so many moments: 1 for ten plain ones."""
-    roots = np.where(rooted > 0, _ROOT + _FIVE_ROOTS_MORE * _steps(rooted - 6), 0.0)
-    more = np.where(plain > 12, _FIVE_MORE * _steps(plain - 10), _TWO_MORE * (plain > 10))
-    return np.asarray(1 + more + roots)
-
-
-def _rate(z: Array) -> Array:
-    """Digits that a Chebyshev series gains a term, with the nearest singularity at -z."""
-    z = np.clip(z, 1.05, 1e6)
-    return np.asarray(np.log10(z + np.sqrt(z * z - 1)))
-
-
-def _steps(moments: Array | Ints) -> Array:
-    """How many times five."""
-    return np.asarray(np.ceil(np.clip(moments, 0, 100) / 5))
+    fives, root_fives = (np.ceil(np.clip(more, 0, 100) / 5) for more in (plain - 10, rooted - 6))
+    roots = np.where(rooted > 0, _ROOT + _FIVE_ROOTS_MORE * root_fives, 0.0)
+    return np.asarray(1 + np.where(plain > 12, _FIVE_MORE * fives, _TWO_MORE * (plain > 10)) + roots)

@@ -72,12 +72,9 @@ def begins_and_breaks(scene: Scene, low: float, high: float) -> tuple[Array, Arr
     Returns
     -------
     (ndarray, ndarray)
-        Increasing; formulas are singular next to the first ones. Hertz's law has no others.
+        Increasing; formulas are singular next to the first ones. Hertz's law has only those at separations.
     """
-    separations = np.array(scene.all_separations)
-    if scene.hertzian:
-        return separations, np.empty(0)
-    begins, breaks = [separations], []
+    begins, breaks = [np.array(scene.all_separations)], []
     for branch in scene.ways.among(scene.quantities):
         found = stretches_of(scene, branch, low, high)
         starts, pieces = found.low[found.begins], found.piece[found.begins]

@@ -18,10 +18,9 @@ import numpy as np
 
 from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
-from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.kernels import BUFFER, TOGETHER, add_weighted, unfold
-from mcgw.sampling.moments import OneByOne, add_compensated, in_runs_of_cells
+from mcgw.sampling.moments import Layout, OneByOne, add_compensated, in_runs_of_cells
 from mcgw.sampling.own_radii import Families, RadiusTable, root_ratio
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, centred
 

@@ -9,8 +9,7 @@ from timing import Job, job, parser_of, timed
 
 from mcgw.machine.compiling import use_threads
 from mcgw.sampling import spacing
-from mcgw.sampling.block import Layout
-from mcgw.sampling.moments import OneByOne
+from mcgw.sampling.moments import Layout, OneByOne
 
 SURFACES, CELLS, MANY, FEW = 64, 20, 4000, 16
 ORDERS = [(10, 0), (12, 0), (15, 0), (20, 0), (10, 6), (10, 11), (10, 16)]

@@ -45,7 +45,7 @@ def entered(call):
 
 @pytest.mark.parametrize(
     ("name", "functions", "files"),
-    [("Scene", 66, 17), ("simulate", 118, 27), ("run", 165, 35), ("compare", 115, 28)],
+    [("Scene", 66, 17), ("simulate", 99, 24), ("run", 146, 32), ("compare", 115, 28)],
 )
 def test_the_simplest_scene_takes_few_steps(name, functions, files, tmp_path):
     asked = scene()

@@ -12,7 +12,7 @@ import analytic
 import mcgw
 from mcgw.sampling import samplers
 from mcgw.sampling.cells import mesh_of
-from mcgw.sampling.counts import counts_of
+from mcgw.sampling.counted import counts_of
 from mcgw.sampling.crowds import _FOURTH, _SQUARED, _THIRD, CROWDED, _partly, crowding
 from mcgw.sampling.samplers import aggregate_of, distance_of, sampler_of
 

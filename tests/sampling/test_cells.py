@@ -9,7 +9,7 @@ from oracles.inside import sampler_of, summits_drawn
 
 import analytic
 import mcgw
-from mcgw.sampling.cells import evenness, mesh_of, no_cells
+from mcgw.sampling.cells import mesh_of, no_cells, tolerances
 
 
 def test_heights_in_all_are_the_asperities_asked_for(make_scene):
@@ -71,5 +71,5 @@ def test_far_out_there_are_no_cells(make_scene):
 def test_errors_are_held_against_the_least_modulus_of_a_cell():
     """A lone contact may sit there: from a ratio of four on, unless the sign changes."""
     moduli = np.array([[1.0, 2.0], [0.25, 1.0], [0.05, 1.0], [1e-3, 1.0], [-1e-3, 1.0], [-0.01, -1.0]])
-    found = evenness(analytic.Custom(np.tanh), moduli)
+    found, _ = tolerances(analytic.Custom(np.tanh), 0.0, np.ones_like(moduli), moduli)
     np.testing.assert_allclose(found, [1.0, 1.0, 0.2, 1 / 16, 1.0, 1 / 16], rtol=1e-15)

@@ -10,10 +10,9 @@ from numpy.polynomial.chebyshev import chebvander
 from oracles.inside import SAMPLERS, sampler_of
 from scipy.stats import binom, chi2, norm
 
-from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import mesh_of
-from mcgw.sampling.counts import counts_of
-from mcgw.sampling.moments import OneByOne, add_compensated
+from mcgw.sampling.counted import counts_of
+from mcgw.sampling.moments import Layout, OneByOne, add_compensated
 from mcgw.sampling.philox import CELLS, centred, philox, uniforms
 
 FALSE_ALARM = 1e-6  # of each chi-square test; the seeds are fixed

@@ -14,7 +14,7 @@ from scipy.special import log_ndtr
 
 import analytic
 import mcgw
-from mcgw.sampling.counts import counts_of
+from mcgw.sampling.counted import counts_of
 
 GAMMA_STAR = math.exp(0.5) / (math.exp(0.5) - 1)
 

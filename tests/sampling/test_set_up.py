@@ -7,7 +7,7 @@ import scipy.stats
 import analytic
 import mcgw
 from mcgw.machine.process import kept
-from mcgw.sampling.rules import product
+from mcgw.sampling.kernels import product
 
 
 def test_each_sum_of_a_product_has_one_order():

@@ -11,7 +11,7 @@ from analytic import Homogeneous, quantity_of
 from analytic.arrays import Array, Ints
 from analytic.laws import Branch
 from mcgw.sampling.cells import Mesh
-from mcgw.sampling.response.rows import Rows, Sixteen
+from mcgw.sampling.response.rows import Rows, sixteen, sure_sums
 from mcgw.sampling.stretches import Stretches, stretches_of
 from mcgw.scene.scene import Scene
 
@@ -26,7 +26,7 @@ class _Pieces:
     low: Array  # height from which on it holds
 
     def values(self, rows: Ints, above: Array, e: Array) -> Array:
-        """Values at heights `above` the separation of each row, of modulus `e`: shape (points, rows)."""
+        """Values at heights `above` the separation of each row, of modulus `e`: shape (rows, points)."""
         return self._values(rows, above, e, 1.0)
 
     def at_start(self, rows: Ints, above: Array, e: Array, u: Array) -> list[tuple[bool, Ints, Array, Array]]:
@@ -36,17 +36,18 @@ class _Pieces:
         are, their values, and the whole powers of u that they are to be multiplied by besides. The even part
         in the root of the penetration is smooth, the odd part has the root as a factor.
         """
-        above = (self.low[rows] - self.h[rows]) + above
+        above = (self.low[rows] - self.h[rows])[:, None] + above
         forth, back = (self._values(rows, above, e, sign) for sign in (1.0, -1.0))
         every, none = np.arange(len(rows)), np.zeros(len(rows))
-        even, odd = (forth + back) / 2, (forth - back) / 2 / np.sqrt(u)[:, None]
+        even, odd = (forth + back) / 2, (forth - back) / 2 / np.sqrt(u)
         return [(False, every, even, none), (True, every, odd, none)]
 
     def _values(self, rows: Ints, above: Array, e: Array, sign: float) -> Array:
         result = np.empty(above.shape)
         for here, (branch, quantity, piece, scale) in self._by_kind(rows):
             h = self.h[rows[here]]
-            result[:, here] = scale * branch.value(quantity, piece, h, above[:, here], e[:, here], sign=sign)
+            value = branch.value(quantity, piece, h, above[here].T, e[here].T, sign=sign)
+            result[here] = scale * value.T
         return result
 
     def _by_kind(self, rows: Ints) -> Iterator[tuple[Ints, tuple[Branch, str, int, float]]]:
@@ -69,16 +70,17 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh) -> Rows:
     parts: list[tuple[NDArray[Any], ...]] = []
     stretches: dict[Branch, Stretches] = {}
     kinds: list[tuple[Branch, str, int, float]] = []
-    sixteen = Sixteen.of(scene)
+    touching, approach = sixteen(scene.heights, separations.tobytes())
+    heights = approach + separations[:, None]
+    contacts, e = scene.n_asperities * touching, scene.modulus(heights)
     for number, name in enumerate(quantities):
         q, branch = quantity_of(name), scene.ways.of(name)
         if branch not in stretches:
             stretches[branch] = stretches_of(scene, branch, *mesh.range)
         found = stretches[branch]
         roots = (found.piece == 0) & branch.law.root
-        scale, heights = q.scale(scene.surface), sixteen.approach + separations[:, None]
-        terms = branch.terms([q.base], separations[:, None], heights, sixteen.e)[0]
-        total = sixteen.totals(scale, terms)
+        scale = q.scale(scene.surface)
+        total = sure_sums(contacts, scale, branch.terms([q.base], separations[:, None], heights, e)[0])
         parts.append(
             (
                 separations[found.separation],

@@ -12,41 +12,22 @@ a combination of rows that went before.
 """
 
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import in_threads, njit, pieces
-from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import Mesh
+from mcgw.sampling.moments import Layout
 from mcgw.sampling.response.rows import Rows, hertz_rows
-from mcgw.sampling.response.series import Entries
 from mcgw.sampling.response.tree import Nodes, Tree, transfers, tree_over
-from mcgw.sampling.response.walk import walk
+from mcgw.sampling.response.walk import Entries, walk
 from mcgw.scene.ensemble import EXACT
 from mcgw.scene.scene import Scene
 
 FOUR = 4  # rows and columns of a tile
 _WIDTH = 64  # surfaces at a time: what a tile needs of them stays in the innermost cache
-
-
-class Lines(NamedTuple):
-    """Pieces of rows of a matrix, one an array element; a row may have several."""
-
-    row: Ints  # whose they are
-    start: Ints  # first column
-    length: Ints  # number of columns
-    at: Ints  # where their values begin
-    values: Array  # of the columns of all lines
-
-    def entries(self) -> tuple[Ints, Ints, Array]:
-        """Row, column and value of everything that is not zero."""
-        line = np.repeat(np.arange(len(self.row)), self.length)
-        along = np.arange(len(line)) - np.repeat(np.cumsum(self.length) - self.length, self.length)
-        value = self.values[self.at[line] + along]
-        some = np.flatnonzero(value)
-        return self.row[line[some]], self.start[line[some]] + along[some], value[some]
 
 
 def matrix_of(response: Any) -> Array:
@@ -193,56 +174,77 @@ def response_of(scene: Scene, mesh: Mesh, quantities: tuple[str, ...]) -> Respon
         If the grading is not resolved on a cell.
     """
     parts = parts_of(scene, mesh, quantities, EXACT)
+    rows, entries, layout = parts.rows, parts.entries, parts.layout
     shape = len(quantities), len(scene.all_separations)
-    order = parts.rows.order(shape[0] * shape[1])  # four by four such as need the same cells
-    rows, entries = _Rows.of(parts), parts.entries
-    parent, child, moment, coefficients = transfers(parts.mesh, parts.tree, parts.plain)
-    order_of_series = coefficients.shape[1]
-    at, length = np.arange(len(parent)) * order_of_series, np.minimum(parts.plain[child], order_of_series)
-    to_parents = Lines(rows.plain[parent] + moment, rows.plain[child], length, at, coefficients.ravel())
-    places = np.empty_like(order)
-    places[order] = np.arange(len(order))
-    node, rooted = entries.node, entries.rooted
-    start, size = rows.plain[node], parts.plain[node]
-    start[rooted], size[rooted] = rows.rooted[node[rooted]], parts.layout.rooted[node[rooted]]
-    row, length = rows.end + places[parts.rows.answer[entries.row]], np.minimum(entries.length, size)
-    begin = np.cumsum(entries.length) - entries.length
-    to_answers = Lines(row, start, length, begin, entries.coefficients)
-    before = rows.end - rows.given.size
-    answers = np.full(before - (-len(order) // FOUR) * FOUR, -1)  # what each computed row is
-    answers[before:][: len(order)] = order
-    line, column, value = map(np.concatenate, zip(to_parents.entries(), to_answers.entries(), strict=True))
-    given = len(rows.given)
-    groups = given + len(answers) // FOUR
-    tile, which = np.unique(line // FOUR * groups + column // FOUR, return_inverse=True)
-    values = np.zeros((len(tile), FOUR, FOUR))
-    values[which, line % FOUR, column % FOUR] = value
-    ends = np.searchsorted(tile // groups, np.arange(given, groups), side="right")
-    tiles = ends, tile % groups, values, answers.reshape(-1, FOUR)
-    return Response(parts.layout, shape, rows.given, *tiles)
+    # The T_j and the R_j of each cell, the T_j of each parent, then the answers: each begins four rows.
+    of_parents = _in_fours(parts.plain[mesh.size :])
+    padded = Layout(_in_fours(layout.plain), _in_fours(layout.rooted))
+    begin = int(padded.starts[-1])
+    end = begin + int(of_parents.sum())
+    plain = np.concatenate([padded.starts[:-1], begin + np.cumsum(of_parents) - of_parents])
+    given = np.full(begin, -1)
+    given[padded.rows_of(layout)] = np.arange(layout.starts[-1])
+    # Answers four by four such as need the same cells.
+    h, rooted = np.full(shape[0] * shape[1], np.inf), np.zeros(shape[0] * shape[1], dtype=bool)
+    last_first = rows.answer[::-1]  # of several rows the first counts
+    h[last_first], rooted[last_first] = rows.h[::-1], rows.rooted[::-1]
+    order = np.lexsort((h, ~rooted))
+    places = end + np.argsort(order)
+    answers = np.full(end - begin + _in_fours(len(order)), -1)  # what each computed row is
+    answers[end - begin :][: len(order)] = order
+    # Lines of the matrix: row, first column, number of columns.
+    parent, child, moment, of_moments = transfers(mesh, parts.tree, parts.plain)
+    node, root = entries.node, entries.rooted
+    to_parents = plain[parent] + moment, plain[child], parts.plain[child]
+    start, size = plain[node], parts.plain[node]
+    start[root] += padded.plain[node[root]]
+    size[root] = layout.rooted[node[root]]
+    lines = np.concatenate([to_parents, (places[rows.answer[entries.row]], start, size)], axis=1)
+    tiles = _tiles_of(lines, np.concatenate([of_moments, entries.coefficients]), begin, begin + len(answers))
+    return Response(layout, shape, given.reshape(-1, FOUR), *tiles, answers.reshape(-1, FOUR))
 
 
-@dataclass(frozen=True)
-class _Rows:
-    """Where things stand: the T_j and R_j of each cell, the T_j of each parent, then the answers.
+def _in_fours(n: Any) -> Any:
+    """Whole groups of four rows for so many."""
+    return -(-n // FOUR) * FOUR
 
-    Each of them begins a group of four rows.
-    """
 
-    plain: Ints
-    rooted: Ints
-    end: int
-    given: Ints
+def _tiles_of(lines: Ints, values: Array, first: int, end: int) -> tuple[Ints, Ints, Array]:
+    """Gather lines of the rows `first` ... `end` in tiles: how many up to each four rows, columns, values."""
+    lines[2] = np.minimum(lines[2], values.shape[1])
+    order = np.argsort(lines[0] // FOUR)
+    most = int(((lines[1] % FOUR + lines[2] + FOUR - 1) // FOUR).sum())
+    ends, columns = np.empty((end - first) // FOUR, dtype=np.int64), np.empty(most, dtype=np.int64)
+    tiles = np.zeros((most, FOUR, FOUR))
+    n = _fill(order, lines, values, first // FOUR, ends, columns, tiles)
+    return ends, columns[:n].copy(), tiles[:n].copy()
 
-    @classmethod
-    def of(cls, parts: Parts) -> "_Rows":
-        cells, parents = parts.layout, parts.plain[parts.mesh.size :]
-        sizes = np.stack([cells.plain, cells.rooted], axis=1).ravel()
-        in_fours = -(-np.concatenate([sizes, parents]) // FOUR) * FOUR
-        starts = np.concatenate([[0], np.cumsum(in_fours)])
-        of_cells, of_parents = starts[: len(sizes)], starts[len(sizes) : -1]
-        given = np.full(starts[len(sizes)], -1)
-        moment = np.arange(sizes.sum())
-        given[np.repeat(of_cells - np.cumsum(sizes) + sizes, sizes) + moment] = moment
-        plain = np.concatenate([of_cells[::2], of_parents])
-        return cls(plain, of_cells[1::2], int(starts[-1]), given.reshape(-1, FOUR))
+
+@njit(cache=True)
+def _fill(order: Any, lines: Any, values: Any, first: Any, ends: Any, columns: Any, tiles: Any) -> Any:
+    """Write what is not zero of lines, taken in this order, four rows after four; return how many tiles."""
+    place = np.full(first + len(ends), -1)  # of each group of columns the tile, in the current group of rows
+    tile = at = 0
+    for group in range(len(ends)):
+        begin, of_group = tile, at
+        while at < len(order) and lines[0, order[at]] // FOUR == first + group:
+            line, at = order[at], at + 1
+            for j in range(lines[2, line]):
+                column = (lines[1, line] + j) // FOUR
+                if values[line, j] != 0.0 and place[column] < begin:
+                    place[column], k = begin, tile
+                    while k > begin and columns[k - 1] > column:
+                        columns[k] = columns[k - 1]
+                        k -= 1
+                    columns[k] = column
+                    tile += 1
+        for k in range(begin, tile):
+            place[columns[k]] = k
+        for k in range(of_group, at):
+            line = order[k]
+            for j in range(lines[2, line]):
+                column = lines[1, line] + j
+                if values[line, j] != 0.0:
+                    tiles[place[column // FOUR], lines[0, line] % FOUR, column % FOUR] = values[line, j]
+        ends[group] = tile
+    return tile

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from analytic import HeightLaw, quantity_of
 from analytic.arrays import Array, Ints
+from mcgw.machine.compiling import njit
 from mcgw.machine.process import kept
 from mcgw.sampling.spacing import SURE
 from mcgw.scene.scene import Scene
@@ -25,9 +26,10 @@ class Powers(NamedTuple):
     graded: NDArray[np.bool_]  # as `Rows.graded`
 
     def values(self, rows: Ints, above: Array, e: Array) -> Array:
-        """Values at heights `above` the separation of each row, of modulus `e`: shape (points, rows)."""
-        powers = power_of(self.exponent[rows], above)
-        return np.asarray(self.scale[rows] * np.where(self.graded[rows], e, 1.0) * powers)
+        """Values at heights `above` the separation of each row, of modulus `e`: shape (rows, points)."""
+        result = np.empty(above.shape)
+        _powers(self.exponent[rows], self.scale[rows], self.graded[rows], above, e, result)
+        return result
 
     def at_start(self, rows: Ints, above: Array, e: Array, u: Array) -> list[tuple[bool, Ints, Array, Array]]:
         """Return the same where each row begins, on the cell or node of variable u, `above` its start.
@@ -35,10 +37,22 @@ class Powers(NamedTuple):
         As ``s - h = u q(u)``, they are ``u^n q^n e`` with q^n e smooth: whether they are still to be
         multiplied by sqrt(u), of which of the rows they are, q^n e, and the whole powers of u.
         """
-        values, whole = self.values(rows, above / u[:, None], e), np.floor(self.exponent[rows])
+        values, whole = self.values(rows, above / u, e), np.floor(self.exponent[rows])
         half = self.exponent[rows] > whole
         parts = [(root, np.flatnonzero(half == root)) for root in (False, True)]
-        return [(root, which, values[:, which], whole[which]) for root, which in parts]
+        return [(root, which, values[which], whole[which]) for root, which in parts]
+
+
+@njit(cache=True)
+def _powers(exponent: Any, scale: Any, graded: Any, x: Any, e: Any, result: Any) -> None:
+    """Write `Powers.values` of heights `x`, by products and roots."""
+    for k in range(len(x)):
+        whole = int(np.floor(exponent[k]))
+        for i in range(x.shape[1]):
+            power = np.sqrt(x[k, i]) if exponent[k] > whole else 1.0
+            for _ in range(whole):
+                power *= x[k, i]
+            result[k, i] = scale[k] * (e[k, i] if graded[k] else 1.0) * power
 
 
 @dataclass(frozen=True)
@@ -60,13 +74,6 @@ class Rows:
     # mean sum over a surface of the answer, where so many touch that it is sure to be of that size; else 0
     total: Array
     formulas: Any  # what holds
-
-    def order(self, answers: int) -> Ints:
-        """So many answers in an order in which neighbours need the same cells."""
-        h, rooted = np.full(answers, np.inf), np.zeros(answers, dtype=bool)
-        first = np.unique(self.answer, return_index=True)[1]
-        h[self.answer[first]], rooted[self.answer[first]] = self.h[first], self.rooted[first]
-        return np.lexsort((h, ~rooted))
 
     def nearest(self, starts: Array) -> tuple[Ints, Ints]:
         """Of each kind the row of the highest separation that is smooth on each cell: the hardest to resolve.
@@ -98,11 +105,12 @@ def hertz_rows(scene: Scene, quantities: tuple[str, ...]) -> Rows:
     chosen, once = [quantity_of(name) for name in quantities], np.array(scene.all_separations)
     h = np.tile(once, len(chosen))
     values = np.array([(q.exponent, q.modulus, q.scale(scene.surface)) for q in chosen]).reshape(-1, 3)
-    exponent, graded, scale = np.repeat(values, len(once), axis=0).T.copy()
-    totals, sixteen = [np.zeros(0)], Sixteen.of(scene)
-    for q in chosen:
-        terms = power_of(q.exponent, sixteen.approach)
-        totals.append(sixteen.totals(q.scale(scene.surface), terms * sixteen.e if q.modulus else terms))
+    exponent, modulus, scale = np.repeat(values, len(once), axis=0).T.copy()
+    graded, every = modulus.astype(bool), np.arange(len(h))
+    touching, approach = sixteen(scene.heights, once.tobytes())
+    sums = scene.n_asperities * touching, approach, scene.modulus(approach + once[:, None])
+    contacts, approach, e = (np.concatenate([part] * len(chosen) or [part[:0]]) for part in sums)
+    unscaled = Powers(exponent, np.ones(len(h)), graded).values(every, approach, e)
     return Rows(
         h=h,
         low=h,
@@ -111,49 +119,28 @@ def hertz_rows(scene: Scene, quantities: tuple[str, ...]) -> Rows:
         rooted=exponent % 1 != 0,
         rough=np.zeros(len(h), dtype=bool),
         lost=np.zeros(len(h), dtype=bool),
-        graded=graded.astype(bool),
-        kind=np.repeat(np.arange(len(chosen)), len(once)),
-        answer=np.arange(len(h)),
-        total=np.concatenate(totals),
-        formulas=Powers(exponent, scale, graded.astype(bool)),
+        graded=graded,
+        kind=every // len(once),
+        answer=every,
+        total=sure_sums(contacts, scale, unscaled),
+        formulas=Powers(exponent, scale, graded),
     )
 
 
-def power_of(exponent: Array | float, x: Array) -> Array:
-    """Return ``x^exponent`` for whole or half-integer exponents, by products and roots."""
-    whole = np.floor(exponent)
-    power = np.where(exponent > whole, np.sqrt(x), 1.0)
-    for times in range(int(np.max(whole, initial=0))):
-        power = np.where(whole > times, power * x, power)
-    return power
-
-
-@dataclass(frozen=True)
-class Sixteen:
-    """Quantiles of the heights in contact at each separation: for the order of magnitude of a sum."""
-
-    contacts: Array  # mean number on a surface, shape (separations,)
-    approach: Array  # heights above the separation, shape (separations, 16)
-    e: Array  # E*(s)/E* there
-
-    @classmethod
-    def of(cls, scene: Scene) -> "Sixteen":
-        """Of the separations of a scene, each once."""
-        h = np.array(scene.all_separations)
-        touching, approach = _quantiles(scene.heights, h.tobytes())
-        return cls(scene.n_asperities * touching, approach, scene.modulus(approach + h[:, None]))
-
-    def totals(self, scale: float, terms: Array) -> Array:
-        """Mean sums of what contacts at these heights add, where so many touch that it is sure; else 0."""
-        with np.errstate(over="ignore"):
-            total = np.minimum(np.abs(scale * terms.mean(axis=1)) * self.contacts, np.finfo(float).max)
-        return np.asarray(np.where(self.contacts > SURE, total, 0.0))
-
-
 @kept
-def _quantiles(law: HeightLaw, separations: bytes) -> tuple[Array, Array]:
-    """Share of heights above each separation, and 16 equally likely distances of those from it."""
+def sixteen(law: HeightLaw, separations: bytes) -> tuple[Array, Array]:
+    """Return the share of heights above each separation, and 16 equally likely distances of those from it.
+
+    For the order of magnitude of a sum.
+    """
     h, share = np.frombuffer(separations), (np.arange(16) + 0.5) / 16
     touching = law.sf(h)
     rank = np.maximum(touching[:, None] * share, np.finfo(float).tiny)
     return touching, np.maximum(law.isf(rank) - h[:, None], 0.0)
+
+
+def sure_sums(contacts: Array, scale: Array | float, terms: Array) -> Array:
+    """Mean sums of what so many contacts add of `sixteen` kinds, where so many are sure to touch; else 0."""
+    with np.errstate(over="ignore"):
+        total = np.minimum(np.abs(scale * terms.mean(axis=1)) * contacts, np.finfo(float).max)
+    return np.asarray(np.where(contacts > SURE, total, 0.0))

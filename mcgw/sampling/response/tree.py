@@ -17,17 +17,15 @@ from numpy.typing import NDArray
 from analytic import Grading, resolved_breaks
 from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
-from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh, evenness, height_noise
-from mcgw.sampling.response.rows import Rows
-from mcgw.sampling.rules import multiply
+from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh, tolerances
+from mcgw.sampling.kernels import multiply
 
 _SCATTER = 8  # asperities more than expected
-_DIGITS = 8.0  # last digits of a height that a formula may lose
 
 
 @dataclass(frozen=True)
 class Tree:
-    """Nodes: first the cells in their order, then parents, each after its two children."""
+    """Nodes: first the cells in their order, then parents, each after its two children; at last the root."""
 
     first: NDArray[np.int64]  # first cell of each node
     last: NDArray[np.int64]  # the cell after its last one
@@ -36,11 +34,6 @@ class Tree:
     probability: Array  # of a height in each node, shape (nodes,)
     # heights above the lower edges of nodes, at the Chebyshev points of their variables: (nodes, points)
     above: Array
-
-    @property
-    def size(self) -> int:
-        """Number of nodes; the last one is the root."""
-        return len(self.first)
 
 
 @lru_cache(maxsize=8)  # another grading asks for the same
@@ -57,16 +50,10 @@ def tree_over(mesh: Mesh) -> Tree:
         first[above], last[above], left[above], right[above] = first[a], last[b], a, b
         probability[above] = probability[a] + probability[b]
         level, end = np.concatenate([above, level[2 * len(a) :]]), end + len(a)
-    heights = _heights_above(mesh, mesh.edges[first], mesh.edges[last])
-    return Tree(first, last, left, right, probability, heights)
-
-
-def _heights_above(mesh: Mesh, start: Array, end: Array) -> Array:
     u = (1 + NODES) / 2
-    above = (end - start)[:, None] * u
-    cells = np.arange(mesh.size)
-    above[: mesh.size] = mesh.offsets(cells, np.repeat(u[:, None], mesh.size, axis=1)).T
-    return above
+    heights = (mesh.edges[last] - mesh.edges[first])[:, None] * u
+    heights[:cells] = mesh.offsets(np.arange(cells), np.repeat(u[:, None], cells, axis=1)).T
+    return Tree(first, last, left, right, probability, heights)
 
 
 def transfers(mesh: Mesh, tree: Tree, moments: Ints) -> tuple[Ints, Ints, Ints, Array]:
@@ -75,7 +62,7 @@ def transfers(mesh: Mesh, tree: Tree, moments: Ints) -> tuple[Ints, Ints, Ints, 
     A node has so many `moments`. Parents, children, j, and coefficients of T_0, T_1, ... of the child, shape
     (lines, order).
     """
-    parent = np.repeat(np.arange(mesh.size, tree.size), 2)
+    parent = np.repeat(np.arange(mesh.size, len(tree.left)), 2)
     child = np.stack([tree.left, tree.right], axis=1)[mesh.size :].ravel()
     start, end = mesh.edges[tree.first[parent]], mesh.edges[tree.last[parent]]
     s = (mesh.edges[tree.first[child]] - start)[:, None] + tree.above[child]
@@ -117,9 +104,7 @@ class Nodes:
 
     start: Array  # height at which each begins, shape (nodes,)
     end: Array  # and ends
-    above: (
-        Array  # heights above the start at the Chebyshev points of a node's variable, shape (nodes, points)
-    )
+    above: Array  # heights above the start at the Chebyshev points of its variable, shape (nodes, points)
     moduli: Array  # E*(s)/E* there
     parent: NDArray[np.bool_]  # whether it has children
     # whether the grading has a break inside a parent, which its values at 20 heights may not show
@@ -139,7 +124,7 @@ class Nodes:
         kinks = np.array(resolved_breaks(grading, *mesh.range))
         inside = np.searchsorted(kinks, end) > np.searchsorted(kinks, start, side="right")
         largest = np.maximum(np.abs(moduli).max(axis=1), np.finfo(float).tiny)
-        crowd = n_asperities * tree.probability + _SCATTER
+        even, noise = tolerances(grading, start, above, moduli)
         return cls(
             start=start,
             end=end,
@@ -147,26 +132,8 @@ class Nodes:
             moduli=moduli,
             parent=tree.left >= 0,
             broken=inside & (tree.left >= 0),
-            crowd=crowd,
-            even=evenness(grading, moduli),
-            noise=height_noise(start, above, moduli) / largest,
+            crowd=n_asperities * tree.probability + _SCATTER,
+            even=even,
+            noise=noise / largest,
             accuracy=accuracy,
         )
-
-    def at(self, node: Ints, h: Array) -> tuple[Array, Array]:
-        """Heights above separations at the points of some nodes, and the moduli there: (points, nodes)."""
-        return (self.start[node] - h) + self.above[node].T, self.moduli[node].T
-
-    def rough_noise(self, node: Ints, row: Ints, rows: Rows) -> Array:
-        """Return what the last digit of a height makes of a power of its distance from the end of a row."""
-        noise = np.zeros(len(row))
-        for at, far, which in (
-            (self.start, rows.low, rows.rough & np.isfinite(rows.low)),
-            (self.end, rows.high, rows.lost),
-        ):
-            near = np.flatnonzero(which[row])
-            edge = at[node[near]]
-            distance = np.abs(edge - far[row[near]])
-            share = np.spacing(np.abs(edge)) / np.where(distance > 0, distance, np.inf)
-            noise[near] = np.maximum(noise[near], np.minimum(_DIGITS * share, 1.0))
-        return noise
