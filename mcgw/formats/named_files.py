@@ -1,12 +1,14 @@
-"""Files that somebody names, read without trust: regular ones of bounded size, arrays, TOML, JSON."""
+"""Files that somebody names, read without trust: regular ones of bounded size, numbers, TOML, JSON."""
 
+import csv
 import json
+import math
 import os
 import re
 import stat
 import tomllib
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from tokenize import TokenError
@@ -16,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.errors import StoreError
+from mcgw.formats.units import signed
 
 HDF5 = b"\x89HDF\r\n"  # how such a file begins
 _UNSOUND = (EOFError, KeyError, MemoryError, OverflowError, SyntaxError, TokenError, TypeError, ValueError)
@@ -23,6 +26,7 @@ _MOST_PARTS = 100  # of a dotted key: the parser's time grows as their square
 _LONG_KEY = re.compile(rf"(?<![\w\"'-])(?:[\w\"'-]++[ \t]*+\.[ \t]*+){{{_MOST_PARTS}}}")
 # Texts and comments, which may be full of dots.
 _ASIDE = re.compile(r'"(?:[^"\\\n]|\\.)*+"|\'[^\'\n]*+\'|#[^\n]*+')
+_NAMED = re.compile(r"\s*(\w+)\s*(?:[(\[/ ]\s*([^()\[\]]*?)\s*[)\]]?)?\s*")  # z, z (um), z [um], z / um, z um
 
 
 def open_regular(path: Path) -> int:
@@ -73,6 +77,51 @@ def open_npy(path: Path) -> NDArray[Any]:
         reason = (str(error).splitlines() or ["damaged"])[0]
         raise ValueError(f"{path}: is not a valid .npy file: {reason}") from None
     return array
+
+
+def columns_of(path: Path, most: int, *axes: Mapping[str, tuple[str, float]]) -> list[NDArray[np.float64]]:
+    """Return a column of a CSV file for each axis, by one of its names, over a size in the SI unit of it.
+
+    Units may follow the names, ``z (um), E_star (GPa)``, or the numbers, ``61.2 GPa``; # begins a comment.
+    Raises ValueError, as all here, if it cannot be read or is not such a table; no text of it is quoted.
+    """
+    lines = [line for line in read_text(path, most).splitlines() if line.strip() and line[0] != "#"]
+    try:
+        header, *rows = list(csv.reader(lines)) or [[]]
+    except csv.Error as error:
+        raise ValueError(f"{path}: is not a table: {error}") from None
+    names, found = " and ".join(" or ".join(axis) for axis in axes), list[NDArray[np.float64]]()
+    heads = [(k, match) for k, text in enumerate(header) if (match := _NAMED.fullmatch(text))]
+    for axis in axes:
+        own = [(k, match[2] or "", *axis[match[1]]) for k, match in heads if match[1] in axis]
+        own = [each for each in own if not math.isnan(signed(f"1{each[1]}", each[2]))]
+        if len(own) != 1:
+            raise ValueError(
+                f"{path}: the first line must name {names}, with commas, such as z (um),E_star (GPa)"
+            )
+        ((k, unit, si, size),) = own
+        cells = [row[k] if len(row) == len(header) else "" for row in rows]
+        in_unit, own_unit = (np.array([signed(cell + each, si) for cell in cells]) for each in (unit, ""))
+        found.append(np.where(np.isfinite(in_unit), in_unit, own_unit) / size)
+    for k in np.flatnonzero(~np.isfinite(found).all(axis=0))[:1]:
+        raise ValueError(f"{path}: row {k + 1} below the header has no number as {names}")
+    return found
+
+
+def numbers_of(path: Path, most: int) -> NDArray[np.float64]:
+    """Return the heights in a ``.npy`` file, or in a text with one a line (# begins a comment)."""
+    if path.suffix == ".npy":
+        array = open_npy(path)
+        if array.nbytes > most:
+            raise ValueError(f"{path}: longer than {most} bytes; give fewer heights")
+        return np.asarray(array, dtype=np.float64).ravel()
+    lines = read_text(path, most).splitlines()
+    try:
+        return np.loadtxt(lines, dtype=np.float64, delimiter=",", ndmin=1).ravel()
+    except ValueError:
+        raise ValueError(
+            f"{path}: give one height per line, or the same number on each line, separated by commas"
+        ) from None
 
 
 def loads(text: str) -> dict[str, Any]:

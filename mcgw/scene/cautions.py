@@ -4,6 +4,7 @@ import math
 from bisect import bisect_left
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -50,12 +51,9 @@ def cautions(scene: Scene) -> list[str]:
 
 def _crowd(scene: Scene) -> Iterator[str]:
     """Caution about contacts that interact or merge."""
-    h, theory = np.unique(scene.separations), scene.theory
-
-    def sparse(separation: float) -> bool:
-        return bool(theory.mean("area_fraction", separation) <= _CROWDED)
-
-    if crowded := bisect_left(h, True, key=sparse):  # the area falls with the separation
+    h, fraction = np.unique(scene.separations), partial(scene.theory.mean, "area_fraction")
+    # The area falls with the separation.
+    if crowded := bisect_left(h, True, key=lambda separation: bool(fraction(separation) <= _CROWDED)):
         apart = " (load too large if d is that of a rigid punch, too small if it is the mean gap)"
         yield (
             f"up to d/sigma = {h[crowded - 1]:.3g} more than {_CROWDED:.0%} of the nominal area is in "

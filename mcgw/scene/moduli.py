@@ -142,7 +142,13 @@ def _values(scene: Fields) -> Iterator[str]:
                 yield f'ensemble.keep = "statistics": {error}; or use "sums"'
 
 
-CHECKS = (_reach, _units, _values)  # each where those before it find nothing
+def modulus_mistakes(scene: Fields) -> Iterator[str]:
+    """Find what is wrong with a grading, or a contact law of one's own: the first check that finds it."""
+    known = isinstance(scene.grading, _PARAMETERS) and scene.law.name != "custom"
+    for check in (_values,) if known else (_reach, _units, _values):
+        if found := list(check(scene)):
+            yield from found
+            return
 
 
 def doubts_of_table(table: analytic.Table, scene: Fields) -> Iterator[str]:

@@ -8,16 +8,18 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 import analytic
-from analytic import UNLOADING, HeightLaw, MeasuredRadii, Nayak, RandomCurvature
-from analytic.laws import ContactLaw
+from analytic import UNLOADING, HeightLaw, Interaction, MeasuredRadii, Nayak, RandomCurvature
+from analytic.laws import ContactLaw, Hertz
 from analytic.laws.law import check_poisson
+from mcgw.scene import laws
 from mcgw.scene.contact import Contact, Joint
 from mcgw.scene.ensemble import Sampling
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.keys import INSIDE, KEYS, TABLES
 from mcgw.scene.kinds import as_toml
-from mcgw.scene.laws import LISTS, OF_YIELD, Graded, contact_law, grading_of, heights_of, listed_summits
 from mcgw.scene.measured import MOMENTS, SUMMITS, Fitted
 from mcgw.scene.section import SceneError, Section, mistake, nearest
 from mcgw.scene.surface import Spectral, read_surface
@@ -39,7 +41,7 @@ def of_arguments(given: Mapping[str, Any]) -> Values:
     """Read parts of a scene, and keys of them by their names, as its file would be read; None: left out."""
     changes: Values = {}
     for name, value in given.items():
-        place = whole_key(name)
+        place = _WHOLE.get(name, name)
         if name in TABLES:
             changes |= {} if value is None else _keys_of(name, value)
         elif "." in place or place in KEYS[""]:
@@ -55,26 +57,18 @@ def of_arguments(given: Mapping[str, Any]) -> Values:
 def _keys_of(name: str, value: Any) -> Values:
     """Return a table and each of its keys, dotted, of what stands for a whole table."""
     keys = value
-    if isinstance(value, Spectral):
-        summits = {key: x for key, x in _fields(value.surface).items() if key not in SUMMITS}
-        keys = _fields(value.moments) | summits
-    elif isinstance(value, Graded) or (is_dataclass(value) and name not in ("grading", "heights", "summits")):
-        keys = _fields(value)
+    if isinstance(value, laws.Graded) or (
+        is_dataclass(value) and name not in ("grading", "heights", "summits")
+    ):
+        parts = (value.surface, value.moments) if isinstance(value, Spectral) else (value,)
+        keys = {each.name: getattr(part, each.name) for part in parts for each in fields(part)}
+        keys |= dict.fromkeys(SUMMITS) if isinstance(value, Spectral) else {}
     elif name in _OF_WORD and not isinstance(value, Mapping):
         keys = {_OF_WORD[name]: value}
     if not isinstance(keys, Mapping):
         return {name: keys}
-    return {name: {}} | {whole_key(key, f"{name}."): x for key, x in keys.items()}
-
-
-def _fields(part: Any) -> Values:
-    return {each.name: x for each in fields(part) if (x := getattr(part, each.name)) is not None}
-
-
-def whole_key(key: str, inside: str = "") -> str:
-    """Return a key with its table: the only one that has it, or the one that it is `inside`."""
-    whole = key if key in TABLES else _WHOLE.get(key, key)
-    return whole if whole.startswith(inside) else f"{inside}{key}"
+    inside = {key: place for key, place in _WHOLE.items() if place.startswith(f"{name}.")}
+    return {name: {}} | {inside.get(key, f"{name}.{key}"): x for key, x in keys.items()}
 
 
 def with_changes(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -84,7 +78,7 @@ def with_changes(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dic
     """
     changed = {**document}
     for key, value in changes.items():
-        *outer, last = whole_key(key).split(".")
+        *outer, last = _WHOLE.get(key, key).split(".")
         table: Any = changed
         for name in outer:
             held = table.get(name, {})
@@ -114,6 +108,8 @@ def of_tables(document: Tables, folder: Path = Path(), seed: Seeds | None = None
             raise mistake(name, given, f"must be a table: write [{name}] above its keys{other}")
         of[name] = Section(name, given, table.rows, INSIDE[name], _WHOLE)
     surface, heights, radii = _surface_and_summits(of, folder)
+    graded = "exponential" if "gamma" in of["grading"].table else "homogeneous"
+    grading = laws.law_of(of["grading"], graded, folder=folder, surface=surface)
     joint = of["joint"].make(Joint) or Joint()
     separations, contact = _contact(of, heights, joint)
     left_out: Values = dict.fromkeys(("n_surfaces", "n_asperities"), LeftOut())
@@ -124,12 +120,12 @@ def of_tables(document: Tables, folder: Path = Path(), seed: Seeds | None = None
         "title": of[""].get("title"),
         "surface": surface,
         "separations": separations,
-        "grading": grading_of(of["grading"], surface, folder),
+        "grading": grading or analytic.Homogeneous(),
         "negative": of["grading"].get("negative"),
         "heights": heights,
         "summits": radii,
         "contact": contact,
-        "interaction": of["interaction"].make(analytic.Interaction) if "interaction" in document else None,
+        "interaction": of["interaction"].make(Interaction) if "interaction" in document else None,
         "joint": joint,
         "ensemble": of["ensemble"].make(Sampling, **left_out),
         "fitted": of["fitted"].make(Fitted) if "fitted" in document else None,
@@ -142,73 +138,83 @@ def of_tables(document: Tables, folder: Path = Path(), seed: Seeds | None = None
 def _surface_and_summits(of: Mapping[str, Section], folder: Path) -> tuple[Any, HeightLaw | None, Any]:
     """Return a surface, the law of its heights, and that of its radii where summits have their own."""
     section, summits, of_heights = of["surface"], of["summits"], of["heights"]
-    if any(key in summits.table for key in LISTS):
-        if isinstance(of_heights.table.get("law", ""), str) and of_heights.table:
-            of_heights.problems.append("heights: [summits] already gives the heights; leave [heights] out")
-        if (listed := listed_summits(summits, folder)) is None:
-            return None, None, None
-        law, R, told = listed
-        surface = read_surface(section, told)
-        if not isinstance(surface, analytic.Surface):
-            return None, law, None
-        return surface, law, MeasuredRadii(law, R / (surface.radius if "radius" in told else 1.0))
+    if any(key in summits.table for key in laws.LISTS):
+        return _listed(section, summits, of_heights, folder)
     read = read_surface(section)
     surface, default = (read.surface, "random") if isinstance(read, Spectral) else (read, "mean")
     radii = summits.values.get("curvature", default)
     own: Any = radii if isinstance(radii, MeasuredRadii) else read
-    known = isinstance(own, MeasuredRadii | Spectral) and not of_heights.table
-    heights = own.heights if known else heights_of(of_heights, folder)
+    if isinstance(own, MeasuredRadii | Spectral) and not of_heights.table:
+        heights = own.heights
+    else:
+        heights = laws.law_of(of_heights, "gaussian", folder=folder)
     uncertain = getattr(surface, "uncertainty", None)
     if uncertain and set(MOMENTS) & set(uncertain.names) and not isinstance(heights, Nayak | None):
         advice = 'm0, m2 and m4 need heights.law = "nayak"; otherwise give sigma, radius and eta'
         section.fail("uncertainty", advice)
+    if not (surface and heights and (summits.table or default == "random")):
+        return surface, heights, None
+    return surface, heights, summits.make(_radii, surface=surface, heights=heights, curvature=default)
 
-    def radii_of(curvature: Any = default, largest_radius: float | None = None) -> Any:
-        if curvature == "mean" and largest_radius is not None:
-            raise ValueError('largest_radius: needs curvature = "random"')
-        if isinstance(curvature, MeasuredRadii) and heights != curvature.heights:
-            raise ValueError("heights: they differ from those of the measured summits; leave them out")
-        if curvature == "random":
-            if not isinstance(heights, Nayak):
-                raise ValueError('curvature: needs heights.law = "nayak", or m0, m2, m4 under [surface]')
-            largest = largest_radius / surface.radius if surface and largest_radius else math.inf
-            return RandomCurvature(heights.alpha, largest)
-        if isinstance(curvature, RandomCurvature) and curvature.alpha != getattr(heights, "alpha", None):
-            needed = f'heights.law = "nayak", alpha = {curvature.alpha:g}'
-            raise ValueError(f"curvature: needs {needed}; use these")
-        return None if curvature == "mean" else curvature
 
-    return surface, heights, summits.make(radii_of) if surface and heights else None
+def _listed(
+    section: Section, summits: Section, of_heights: Section, folder: Path
+) -> tuple[Any, HeightLaw | None, Any]:
+    """Return the same of summits that are listed: their heights are those of the scene."""
+    if isinstance(of_heights.table.get("law", ""), str) and of_heights.table:
+        of_heights.problems.append("heights: [summits] already gives the heights; leave [heights] out")
+    if (listed := summits.make(laws.listed_summits, folder=folder)) is None:
+        return None, None, None
+    law, R, told = listed
+    surface = read_surface(section, told)
+    if not isinstance(surface, analytic.Surface):
+        return None, law, None
+    return surface, law, MeasuredRadii(law, R / (surface.radius if "radius" in told else 1.0))
+
+
+def _radii(
+    surface: analytic.Surface, heights: HeightLaw, curvature: Any, largest_radius: float | None = None
+) -> RandomCurvature | MeasuredRadii | None:
+    """Return the law of the radii of summits with these heights; None: they have that of the surface."""
+    if curvature == "mean" and largest_radius is not None:
+        raise ValueError('largest_radius: needs curvature = "random"')
+    if isinstance(curvature, MeasuredRadii) and heights != curvature.heights:
+        raise ValueError("heights: they differ from those of the measured summits; leave them out")
+    if curvature == "random":
+        if not isinstance(heights, Nayak):
+            raise ValueError('curvature: needs heights.law = "nayak", or m0, m2, m4 under [surface]')
+        return RandomCurvature(heights.alpha, (largest_radius or math.inf) / surface.radius)
+    if isinstance(curvature, RandomCurvature) and curvature.alpha != getattr(heights, "alpha", None):
+        needed = f'heights.law = "nayak", alpha = {curvature.alpha:g}'
+        raise ValueError(f"curvature: needs {needed}; use these")
+    return None if curvature == "mean" else curvature
 
 
 def _contact(
     of: Mapping[str, Section], heights: HeightLaw | None, joint: Joint
 ) -> tuple[tuple[float, ...], Contact]:
     """Separations from the mean plane of the summits; contacts, with quantities of films and unloading."""
-    section, shift = of["contact"], 0.0
+    section, of_law, shift = of["contact"], of["contact.law"], 0.0
     if section.get("datum") == "surface" and isinstance(heights, Nayak):
         shift = heights.mean / heights.std
     elif section.get("datum") == "surface" and heights is not None:
         section.fail("datum", 'needs heights.law = "nayak", which defines the mean plane of the surface')
-    separations = tuple(h - shift + 0.0 for h in section.make(_listed) or (0.0,))  # -0.0 is 0.0
+    given = section.make(lambda separations: np.atleast_1d(separations))
+    separations = tuple((np.zeros(1) if given is None else given - shift + 0.0).tolist())  # -0.0 is 0.0
     back = section.get("unload_from")
     back = min(separations) if back == "loop" else back
     names = dict.fromkeys(section.get("quantities") or _QUANTITIES)
     names |= {} if joint.film is None else {"conductance_si": None}
     if back is not None:
         names |= {q.name: None for name in names for q in UNLOADING.values() if q.unloading == name}
-    law = contact_law(of["contact.law"])
-    return separations, Contact(law, tuple(names), back, **_softer(of["contact.law"], law))
-
-
-def _listed(separations: Any) -> tuple[float, ...]:
-    return separations if isinstance(separations, tuple) else (separations,)
+    law = laws.law_of(of_law, Hertz.name) or Hertz()
+    return separations, Contact(law, tuple(names), back, **(_softer(of_law, law) if of_law.values else {}))
 
 
 def _softer(section: Section, law: ContactLaw) -> Values:
     """Hardness and Poisson's ratio that an elastic law does not take, to tell whether its contacts yield."""
     found: Values = {}
-    for key in [key for key in OF_YIELD if key in section.values and not section.problems]:
+    for key in [key for key in laws.OF_YIELD if key in section.values and not section.problems]:
         if key not in getattr(law, "__dataclass_fields__", {}) and not law.yields:
             found[key] = section.values[key]
         elif section.values.get("name") is law:

@@ -6,7 +6,7 @@ A scene with nothing left open: numbers in place of functions, and the sampler t
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from copy import copy
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -118,27 +118,24 @@ class Scene(Fields, Shown):
         seed: int | Generator | SeedSequence | None = None,
     ) -> None:
         given = {key: x for key, x in locals().items() if key != "self" and x is not None}
-        self._made_of(of_arguments(given))
+        vars(self).update(vars(Scene.of(of_arguments(given))))
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> Scene:
-        """Return the scene of values that were read, checked as any other."""
+        """Return the scene of values that were read; refuse those that do not go together."""
         scene = object.__new__(cls)
-        scene._made_of(values)
-        return scene
-
-    def _made_of(self, values: Mapping[str, Any]) -> None:
-        """Give what was left out its value, and refuse values that do not go together."""
-        vars(self).update(values)
-        listed = self.summits if self.as_measured and isinstance(self.summits, MeasuredRadii) else None
-        number = len(listed.ratios) if listed else round(min(self.surface.n_asperities, 2.0**62))
-        most = _SURFACES if self.rel_err is None else _MOST_SURFACES
+        vars(scene).update(values)
+        summits = scene.summits
+        listed = summits if isinstance(summits, MeasuredRadii) and scene.as_measured else None
+        number = len(listed.ratios) if listed else round(min(scene.surface.n_asperities, 2.0**62))
+        most = _SURFACES if scene.rel_err is None else _MOST_SURFACES
         for key, value in (("n_asperities", number), ("n_surfaces", 1 if listed else most)):
-            if isinstance(getattr(self, key), LeftOut):  # now, or in the scene that this one was made of
-                vars(self.ensemble)[key] = LeftOut(value)
-        _refuse_mistakes(self)
-        storable(self)  # a function that no series resolves is a mistake as well
-        warn_of_units([*perhaps_other_units(self), *self.ensemble.cautions(self)])
+            if isinstance(getattr(scene, key), LeftOut):  # now, or in the scene that this one was made of
+                vars(scene.ensemble)[key] = LeftOut(value)
+        _refuse_mistakes(scene)
+        storable(scene)  # a function that no series resolves is a mistake as well
+        warn_of_units([*perhaps_other_units(scene), *scene.ensemble.cautions(scene)])
+        return scene
 
     def replace(self, **changes: Any) -> Scene:
         """Return the scene with other values; numbers that were left out follow from them.
@@ -214,17 +211,17 @@ class Scene(Fields, Shown):
 
 def _refuse_mistakes(scene: Scene) -> None:
     """Ask its parts, later ones only where the earlier ones find nothing."""
-    stages: list[Any] = [
-        (scene.contact.mistakes, scene.ensemble.mistakes),
-        (scale_mistakes,),
+    stages: list[list[Callable[[Any], Iterable[str]]]] = [
+        [scene.contact.mistakes, scene.ensemble.mistakes],
+        [scale_mistakes],
         [] if scene.hertzian else [law_mistakes],
         [] if scene.joint.gas is None else [scene.joint.mistakes],
         [] if scene.interaction is None else [interaction_mistakes],
     ]
     if not isinstance(scene.grading, Homogeneous) or scene.law.name == "custom":
-        from mcgw.scene.moduli import CHECKS  # for those scenes alone
+        from mcgw.scene.moduli import modulus_mistakes  # for those scenes alone
 
-        stages += [(check,) for check in CHECKS]
+        stages.append([modulus_mistakes])
     for checks in stages:
         if found := [line for check in checks for line in check(scene)]:
             raise SceneError(found)

@@ -146,7 +146,7 @@ class Section:
         They are noted at the key that they name, or at the first that is given; `why` the law needs it.
         """
         known = signature_of(make).parameters
-        given = others | {name: value for name, value in self.values.items() if name in known}
+        given = {name: value for name, value in (others | self.values).items() if name in known}
         told = {*given, *self.table, *(name for row in self.present for name in (*row.needs, *row.excludes))}
         for name in [x.name for x in known.values() if x.default is Parameter.empty and x.name not in told]:
             if name in self.rows:

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic import Gaussian, Hertz, Homogeneous, Nayak, RandomCurvature, SpectralMoments, Surface
-from analytic.arrays import Marks
+from analytic.arrays import Array, Marks
 from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
 from mcgw.formats.law_text import law_text
 from mcgw.formats.table import evenly
-from mcgw.validity.error_table import COLUMNS, grid_of
+from mcgw.validity.error_table import COLUMNS, Expected, grid_of
 from mcgw.validity.model_error import Validity
 
 _MOST_SEPARATIONS = 64
@@ -75,11 +75,7 @@ def validity_of(scene: Any, separations: ArrayLike | None = None) -> Validity:
     of_density = maps is _GAUSSIAN and model == "one radius"  # alpha, unless it was given or fitted
     by = f" as eta R sigma = {crowding(scene.surface):.3g} says" if of_density else ""
     by = by if fitted is None else " from the fit"
-    low, high = found.loads
-    loads = f"{low:.2g} to {high:.2g}" if low <= high else "nothing in common"
-    lighter = f"; lighter ones approach {maps.limit}" if p.min() < low and found.lightest < low else ""
-    here = " to ".join(dict.fromkeys(f"{x:.2g}" for x in (p.min(), p.max())))
-    loads = f"{maps.axis} = {here} (measured: {loads}{lighter})"
+    loads = _loads(maps, p, found)
     many = f"{found.maps} maps" if found.maps > 1 else "one map"
     where = (
         f"boundary elements on homogeneous half-spaces, {many} ({maps.words}) a point: "
@@ -89,6 +85,15 @@ def validity_of(scene: Any, separations: ArrayLike | None = None) -> Validity:
     graded = not isinstance(scene.modulus, Homogeneous)
     told = Validity(h, p, error, bias, graded, maps.axis, where, listed=maps is _CAPS)
     return replace(told, unknown=_unknown(told, none, loads))
+
+
+def _loads(maps: Maps, p: Array, found: Expected) -> str:
+    """Return loads in words, and those that were measured."""
+    low, high = found.loads
+    known = f"{low:.2g} to {high:.2g}" if low <= high else "nothing in common"
+    lighter = f"; lighter ones approach {maps.limit}" if p.min() < low and found.lightest < low else ""
+    here = " to ".join(dict.fromkeys(f"{x:.2g}" for x in (p.min(), p.max())))
+    return f"{maps.axis} = {here} (measured: {known}{lighter})"
 
 
 def _unknown(found: Validity, none: Marks, loads: str) -> str:

@@ -45,7 +45,7 @@ def entered(call):
 
 @pytest.mark.parametrize(
     ("name", "functions", "files"),
-    [("Scene", 66, 17), ("simulate", 99, 24), ("run", 146, 32), ("compare", 115, 28)],
+    [("Scene", 55, 16), ("simulate", 99, 24), ("run", 146, 32), ("compare", 108, 21)],
 )
 def test_the_simplest_scene_takes_few_steps(name, functions, files, tmp_path):
     asked = scene()
