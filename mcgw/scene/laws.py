@@ -15,7 +15,6 @@ from mcgw.formats.named_files import columns_of, numbers_of
 from mcgw.scene.section import Section, signature_of
 
 OF_YIELD = ("hardness", "poisson")  # which tell beside an elastic law whether contacts yield
-LISTS = ("file", "heights", "radii", "ratios", "resample")  # keys of listed summits
 LAWS: dict[str, dict[str, Any]] = {  # by their words in the tables of a scene
     "grading": {
         "homogeneous": analytic.Homogeneous,

@@ -28,6 +28,7 @@ Values = dict[str, Any]
 Tables = Mapping[str, Any]
 Seeds = Callable[[], int | None]  # asked for a seed
 
+_LISTS = ("file", "heights", "radii", "ratios", "resample")  # keys of listed summits
 _QUANTITIES = ("load", "area", "stiffness", "contacts")
 # Keys of what may stand in place of a table: a word, or an object that no keys make.
 _OF_WORD = {"grading": "law", "heights": "law", "summits": "curvature", "interaction": "reference"}
@@ -138,7 +139,7 @@ def of_tables(document: Tables, folder: Path = Path(), seed: Seeds | None = None
 def _surface_and_summits(of: Mapping[str, Section], folder: Path) -> tuple[Any, HeightLaw | None, Any]:
     """Return a surface, the law of its heights, and that of its radii where summits have their own."""
     section, summits, of_heights = of["surface"], of["summits"], of["heights"]
-    if any(key in summits.table for key in laws.LISTS):
+    if any(key in summits.table for key in _LISTS):
         return _listed(section, summits, of_heights, folder)
     read = read_surface(section)
     surface, default = (read.surface, "random") if isinstance(read, Spectral) else (read, "mean")

@@ -6,7 +6,7 @@ A scene with nothing left open: numbers in place of functions, and the sampler t
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from copy import copy
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -211,20 +211,22 @@ class Scene(Fields, Shown):
 
 def _refuse_mistakes(scene: Scene) -> None:
     """Ask its parts, later ones only where the earlier ones find nothing."""
-    stages: list[list[Callable[[Any], Iterable[str]]]] = [
-        [scene.contact.mistakes, scene.ensemble.mistakes],
-        [scale_mistakes],
-        [] if scene.hertzian else [law_mistakes],
-        [] if scene.joint.gas is None else [scene.joint.mistakes],
-        [] if scene.interaction is None else [interaction_mistakes],
-    ]
+    checks = [scale_mistakes]
+    if not scene.hertzian:
+        checks.append(law_mistakes)
+    if scene.joint.gas is not None:
+        checks.append(scene.joint.mistakes)
+    if scene.interaction is not None:
+        checks.append(interaction_mistakes)
     if not isinstance(scene.grading, Homogeneous) or scene.law.name == "custom":
         from mcgw.scene.moduli import modulus_mistakes  # for those scenes alone
 
-        stages.append([modulus_mistakes])
-    for checks in stages:
-        if found := [line for check in checks for line in check(scene)]:
-            raise SceneError(found)
+        checks.append(modulus_mistakes)
+    found = [*scene.contact.mistakes(scene), *scene.ensemble.mistakes(scene)]
+    for check in checks:
+        found = found or list(check(scene))
+    if found:
+        raise SceneError(found)
 
 
 def with_sampling(scene: Scene, **changes: Any) -> Scene:
