@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from numpy.polynomial.chebyshev import chebvander
 from oracles.inside import SAMPLERS, sampler_of
-from scipy.stats import binom, chi2, norm
+from scipy.stats import binom, chi2, kstest, norm
 
 from mcgw.sampling.cells import mesh_of
-from mcgw.sampling.counted import counts_of
+from mcgw.sampling.counted import counts_of, extra_heights
 from mcgw.sampling.moments import Layout, OneByOne, add_compensated
 from mcgw.sampling.philox import CELLS, centred, philox, uniforms
 
@@ -47,6 +47,15 @@ def test_rare_contacts_are_binomial_and_not_poisson(make_scene, n, h):
     poisson = np.minimum(np.random.default_rng(1).poisson(n * shares.sum(), MANY), n)
     if n < 10:
         assert p_value(poisson, n, shares.sum(), n) < FALSE_ALARM  # the test can fail
+
+
+def test_heights_below_all_cells_follow_the_law_from_the_lowest_separation_on(make_scene):
+    scene = make_scene(separations=(-5.3, 0.0), n_asperities=10**6, grading=None)
+    mesh = mesh_of(scene)
+    heights = extra_heights(scene, mesh, 0, counts_of(scene, mesh, 0, MANY // 32))[:, 1]
+    low, ends = heights[heights < mesh.edges[0]], norm.cdf([-5.3, mesh.edges[0]])
+    assert low.size > 100
+    assert kstest((norm.cdf(low) - ends[0]) / np.ptp(ends), "uniform").pvalue > FALSE_ALARM
 
 
 @pytest.mark.parametrize("n", [10**9, 10**12])
