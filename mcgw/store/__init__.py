@@ -51,8 +51,7 @@ are merged at the end and then removed. What each mechanism is for:
 ``h5_writing``   the one writer of files, shards and records, and their checksums; HDF5 sees no full disk
 ``h5_reading``   the one reader: plain tables of numbers alone, looked at on every opening
 ``run_plan``     what is drawn into a file, in which blocks, and where these lie: a kill loses those in hand
-``ownership``    two processes never write one file (shared by jobs that each make a share), and only the
-                 run of the same scene, sampler and versions goes on with it
+``ownership``    two processes never write one file; a run goes on by the same scene, sampler, versions
 ``ensembles``    files and runs in progress opened, and verified
 ``place``        what is there already, leftovers of the dead, and a new file: renamed when it is whole
 """
