@@ -1,16 +1,13 @@
-"""What a process may use of memory, shows while it works and is ended by, and what it runs on."""
+"""What a process may use of memory, shows while it works and is ended by."""
 
-import platform
 import re
 import signal
-import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
-from functools import cache, lru_cache, wraps
-from importlib.metadata import PackageNotFoundError, version
+from functools import lru_cache, wraps
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -22,8 +19,6 @@ _REMEMBERED = 8  # results of a function
 _NUMBERS = (int, float, bytes)
 _WATCHED = ContextVar("_WATCHED", default=False)
 _SHOWN: list[Any] = []  # the bar on the terminal: calls within a call draw none beside it
-_PACKAGES = ("mcgw", "numpy", "scipy", "numba", "h5py")
-_DRAW = ("mcgw", "numpy", "numba", "scipy")
 Tell = Callable[[float, float], Any]
 Progress = bool | Tell | None
 
@@ -184,32 +179,3 @@ def heed_signals() -> Iterator[Signals]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
-@cache
-def versions(packages: tuple[str, ...] = _DRAW) -> str:
-    """Versions of packages, by default of those on which the numbers drawn depend."""
-    known = []
-    for name in packages:
-        try:
-            known.append(f"{name} {version(name)}")
-        except PackageNotFoundError:
-            known.append(f"{name} unknown")
-    return ", ".join(known)
-
-
-@cache
-def provenance() -> dict[str, str]:
-    """Return what is needed to repeat a run, besides its scene: versions, commit of a checkout, processor."""
-    here, commit = Path(__file__).resolve().parents[2], "unknown"  # as of an installed package
-    if (here / ".git").exists():
-        call = ["git", "-C", str(here), "rev-parse", "HEAD"]
-        with suppress(OSError, subprocess.SubprocessError):
-            done = subprocess.run(call, capture_output=True, text=True, timeout=5, check=True)
-            commit = done.stdout.strip()
-    cpu = platform.processor() or platform.machine()
-    with suppress(OSError):
-        cores = re.findall(r"^model name\s*: (.*)", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
-        cpu = f"{cores[0].strip()} ({len(cores)} cores)" if cores else cpu
-    python = f"python {platform.python_version()}"
-    return {"versions": f"{python}, {versions(_PACKAGES)}", "commit": commit, "cpu": cpu}

@@ -1,4 +1,4 @@
-"""Whose a file in the making is: one process has its lock, or several that share; and which run may go on.
+"""Whose a file in the making is: a lock for one process or several; which run may go on; what repeats it.
 
 The lock lies in the folder of the run (`parts_of`) and goes together with the folder when nothing
 else is left there. The system frees it when its holder dies, however that happens. It is the lock of an
@@ -12,11 +12,16 @@ a run may change on its way, as the nodes of a cluster do: to 1e-12 they are the
 """
 
 import os
+import platform
+import re
 import socket
 import sqlite3
 import stat
+import subprocess
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from time import monotonic, sleep
 from typing import Any
@@ -32,6 +37,8 @@ PATIENCE = 1.0  # seconds: a process that was killed may need a moment to die
 _LOCK, _HOLDER = "lock.db", "holder"
 LOCK_FILES = (_HOLDER, _LOCK)
 Question = tuple[str, str, str]  # text of a scene, axes of a sweep or none, versions that draw
+_PACKAGES = ("mcgw", "numpy", "scipy", "numba", "h5py")
+_DRAW = ("mcgw", "numpy", "numba", "scipy")
 _MOST_BYTES = 200
 _UNKNOWN = "another process (or by none, on a disk that keeps no locks)"
 
@@ -146,3 +153,32 @@ def _flat(table: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
             yield from _flat(value, f"{prefix}{key}.")
         else:
             yield prefix + key, value
+
+
+@cache
+def versions(packages: tuple[str, ...] = _DRAW) -> str:
+    """Versions of packages, by default of those on which the numbers drawn depend."""
+    known = []
+    for name in packages:
+        try:
+            known.append(f"{name} {version(name)}")
+        except PackageNotFoundError:
+            known.append(f"{name} unknown")
+    return ", ".join(known)
+
+
+@cache
+def provenance() -> dict[str, str]:
+    """Return what is needed to repeat a run, besides its scene: versions, commit of a checkout, processor."""
+    here, commit = Path(__file__).resolve().parents[2], "unknown"  # as of an installed package
+    if (here / ".git").exists():
+        call = ["git", "-C", str(here), "rev-parse", "HEAD"]
+        with suppress(OSError, subprocess.SubprocessError):
+            done = subprocess.run(call, capture_output=True, text=True, timeout=5, check=True)
+            commit = done.stdout.strip()
+    cpu = platform.processor() or platform.machine()
+    with suppress(OSError):
+        cores = re.findall(r"^model name\s*: (.*)", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
+        cpu = f"{cores[0].strip()} ({len(cores)} cores)" if cores else cpu
+    python = f"python {platform.python_version()}"
+    return {"versions": f"{python}, {versions(_PACKAGES)}", "commit": commit, "cpu": cpu}

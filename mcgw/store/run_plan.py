@@ -31,12 +31,11 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import GROUP, Labelled, Results, Rows, Tables, Variable
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import Expected, check_output, sync, whole_file
-from mcgw.machine.process import provenance, versions
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document, scene_from
 from mcgw.store.h5_reading import look, read_rows, read_tables
 from mcgw.store.h5_writing import BLOCK_TYPE, FILETYPE, FORMAT, MOST_TEXT, RUN_TYPE, write
-from mcgw.store.ownership import another, parts_of, refuse_link
+from mcgw.store.ownership import another, parts_of, provenance, refuse_link, versions
 
 if TYPE_CHECKING:
     from mcgw.ensemble.drawing import GoOn, Values

@@ -15,7 +15,7 @@ from pathlib import Path
 import records
 from timing import parser_of
 
-from mcgw.machine.process import provenance
+from mcgw.store.ownership import provenance
 
 BENCHES = (
     "bench_analytic",
