@@ -17,8 +17,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import erfcx, log_ndtr
 
 from analytic.arrays import Array
 from analytic.nayak import Nayak
@@ -114,7 +114,7 @@ class RandomCurvature:
         """Return ``d log(pdf)/d log(g)``."""
         g, (mu, v) = np.asarray(g, dtype=np.float64), self._peak(self._over_rms(s))
         z = (math.sqrt(1 + v) * g - mu / math.sqrt(1 + v)) / math.sqrt(v)
-        rate = math.sqrt(2 / math.pi) / erfcx(z * math.sqrt(0.5))  # of the normal tail
+        rate = math.sqrt(2 / math.pi) / scipy.special.erfcx(z * math.sqrt(0.5))  # of the normal tail
         return np.asarray(3 + g * g - g * math.sqrt((1 + v) / v) * rate)
 
     def highest(self, g: ArrayLike, s: ArrayLike) -> Array:
@@ -177,7 +177,7 @@ class RandomCurvature:
         mu, v = self._peak(x)
         z = (mu / math.sqrt(1 + v) - math.sqrt(1 + v) * g) / math.sqrt(v)
         over = (g * g - mu * mu / (1 + v) - x**2) / 2
-        return np.asarray(log_ndtr(z) + over - math.log(2 * math.pi / 3 * (1 + v)) / 2)
+        return np.asarray(scipy.special.log_ndtr(z) + over - math.log(2 * math.pi / 3 * (1 + v)) / 2)
 
     def _between(self, low: ArrayLike, high: ArrayLike, s: ArrayLike, power: float = 0.0) -> Array:
         """Mean of ``g^-power`` of curvatures between two, and of 0 of others."""

@@ -9,7 +9,7 @@ from functools import cached_property, lru_cache
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
-from scipy.special import erfcx, gammaln, log_ndtr, ndtri, ndtri_exp
+import scipy
 
 from analytic.arrays import Array
 from analytic.roots import height_between
@@ -28,7 +28,7 @@ def exp_minus_half_square(h: Any) -> Array:
 
 def _below(x: Any) -> Array:
     """Probability of a standard normal number below `x`, to full relative accuracy; in the shape of `x`."""
-    tail = erfcx(np.abs(x) * math.sqrt(0.5)) / 2 * exp_minus_half_square(x)
+    tail = scipy.special.erfcx(np.abs(x) * math.sqrt(0.5)) / 2 * exp_minus_half_square(x)
     return np.asarray(np.where(np.greater(x, 0), 1 - tail, tail))
 
 
@@ -138,8 +138,8 @@ class Gaussian(HeightLaw):
     def ppf(self, p: Array, below: float = np.inf) -> Array:
         """Return ``Phi^-1(p Phi(below))``, by logarithms where that underflows."""
         if below > _FAR:
-            return np.asarray(ndtri(p * _below(below)))
-        return np.asarray(ndtri_exp(np.log(p) + log_ndtr(below)))
+            return np.asarray(scipy.special.ndtri(p * _below(below)))
+        return np.asarray(scipy.special.ndtri_exp(np.log(p) + scipy.special.log_ndtr(below)))
 
     def isf(self, p: Array, above: float = -np.inf) -> Array:
         """Return ``-Phi^-1(p Phi(-above))``."""
@@ -201,7 +201,7 @@ class Weibull(HeightLaw):
     @cached_property
     def _spread(self) -> tuple[float, float]:
         """Deviation over mean of the unreduced x of scale 1, and k times the logarithm of its mean."""
-        first, second = (float(gammaln(1 + n / self.shape)) for n in (1, 2))
+        first, second = (float(scipy.special.gammaln(1 + n / self.shape)) for n in (1, 2))
         return math.sqrt(math.expm1(second - 2 * first)), self.shape * first
 
     @property

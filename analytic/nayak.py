@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import hyp1f1, log_ndtr
 
 from analytic.arrays import Array
 from analytic.heights import HeightLaw
@@ -145,14 +145,15 @@ def _series(law: Nayak, way: int) -> PiecewiseSeries:
         most = np.hypot(_LARGEST / math.sqrt(2), np.maximum(x, 0.0) / rho) / width
         u, w = panelled(np.sort(np.clip([0 * x, *inner, most], 0, most), axis=0))
         if way:
-            exponent = log_ndtr(way * (rho * u - y)) - (width * u) ** 2 / 2
+            exponent = scipy.special.log_ndtr(way * (rho * u - y)) - (width * u) ** 2 / 2
             factor = np.asarray(math.log(width * math.sqrt(3 / (2 * math.pi))))
         else:
             exponent = -((u - rho * y) ** 2) / 2
             factor = math.log(math.sqrt(3) / (2 * math.pi)) - x * x / 2
         largest = exponent.max(axis=0)
         q = (width * u) ** 2
-        summits = q * q * hyp1f1(1, 3, -q)  # 2 (q - 1 + exp(-q)), of which the small values do not cancel
+        # 2 (q - 1 + exp(-q)), of which the small values do not cancel
+        summits = q * q * scipy.special.hyp1f1(1, 3, -q)
         sums = (w * summits * np.exp(exponent - largest)).sum(axis=0)
         return np.asarray(np.log(sums) + largest + factor)
 

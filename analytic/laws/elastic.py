@@ -5,7 +5,7 @@ from math import cos, gamma, pi, sin, sqrt
 from typing import Any, ClassVar
 
 import numpy as np
-from scipy.special import log1p
+import scipy
 
 from analytic.arrays import Array
 from analytic.laws.law import ContactLaw
@@ -156,7 +156,7 @@ class Coated(ContactLaw):
         """Return the load of a contact, in the shape of `y` and `e`, as an integral of its stiffness."""
         t, nu = self.reduced("reduced_thickness"), self.poisson
         w = np.asarray(y) / t
-        z, log = w * w, log1p(w * w)
+        z, log = w * w, scipy.special.log1p(w * w)
         atan = w**3 / 3 * (pi / 2 - np.arctan(w)) + (z - log) / 6
         integral = 2 / pi * atan + ((1 - 2 * nu) * ((1 + z) * log - z) - (z - log)) / (4 * pi * (1 - nu))
         return e * (y * y * y + 3 * (self.ratio - 1) * t**3 * integral)
@@ -165,6 +165,6 @@ class Coated(ContactLaw):
         """Return the stiffness of a spot over 2 E* sqrt(R sigma)."""
         w, nu = np.asarray(y) / self.reduced("reduced_thickness"), self.poisson
         z = w * w
-        mixed = (1 - 2 * nu) * log1p(z) / np.where(w == 0, 1.0, w) - w / (1 + z)
+        mixed = (1 - 2 * nu) * scipy.special.log1p(z) / np.where(w == 0, 1.0, w) - w / (1 + z)
         share = 1 - 2 / pi * np.arctan(w) + mixed / (2 * pi * (1 - nu))
         return np.asarray(e * (y * (1 + (self.ratio - 1) * share)))

@@ -99,7 +99,7 @@ def after(tmp_path_factory):
 VALIDITY = [path for path in ROOT.glob("mcgw/validity/*.py") if path.stem != "__init__"]
 # None of them may be there after a step.
 NOT_THERE = {
-    "analytic": {"mcgw", "matplotlib", "h5py", "numba", "mpmath", "tqdm"},
+    "analytic": {"mcgw", "matplotlib", "h5py", "numba", "mpmath", "tqdm", "scipy.special"},
     "parser": {"numpy", "numba", "h5py", "matplotlib", "scipy"},
     "scene": {"numba", "h5py", "matplotlib", *(f"mcgw.validity.{path.stem}" for path in VALIDITY)},
     "show": {"matplotlib", "numba", "scipy.optimize", "scipy.stats"},
