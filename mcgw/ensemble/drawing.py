@@ -60,7 +60,7 @@ def kept(scene: Scene, sums: Sums) -> dict[str, Any]:
         arrays = answered(scene, arrays, more, np.array(scene.separations))
     for name in filter(lambda name: quantity_of(name).counts, scene.quantities):
         arrays[name] = np.rint(arrays[name]).astype(np.int64)
-    return arrays
+    return {name: np.ascontiguousarray(rows) for name, rows in arrays.items()}  # means have the same bits
 
 
 def block_size(scene: Scene, sampler: Source[Any]) -> int:
@@ -127,13 +127,17 @@ class Values:
 
         `go_on` is called after each piece that fits the memory.
         """
-        parts, done = [], first
+        found, done = Tables(), first
         for block in drawn_blocks(self.sampler, first, stop, block_size(self.scene, self.sampler)):
-            parts.append(kept(self.scene, block))
-            done += len(parts[-1][self.scene.quantities[0]])
+            part, start = kept(self.scene, block), done - first
+            done += len(part[self.scene.quantities[0]])
+            for name, rows in part.items():
+                if not start:
+                    found[name] = np.empty((stop - first, *rows.shape[1:]), rows.dtype)
+                found[name][start : done - first] = rows
             if go_on and not go_on(done):
                 break
-        return joined(parts)
+        return {name: rows[: done - first] for name, rows in found.items()}
 
     def held(self, blocks: Iterable[Tables]) -> Any:
         """Return the results of all blocks, each read in its turn."""

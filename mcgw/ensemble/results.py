@@ -37,6 +37,7 @@ class Rows:
 
     n: int  # number of surfaces
     read: Callable[[slice], Array]  # the rows of a slice
+    together: int = 1  # that are best read at once
 
     def __len__(self) -> int:
         return self.n
@@ -95,7 +96,7 @@ class Results(Held):
 
     def at(self, which: Ints) -> "Results":
         """Return the same at some of the separations, by their numbers."""
-        return self.changed(lambda _, rows: rows[:, which])
+        return self.changed(lambda _, rows: np.take(rows, which, axis=1))
 
     def mean_and_std(self, name: str) -> tuple[Array, Array]:
         """Shifted by the first row, so that nothing cancels."""

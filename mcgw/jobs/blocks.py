@@ -192,9 +192,8 @@ def _merged(plan: Plan, check: Callable[[], None]) -> Labelled:
     if not plan.axes and plan.path.exists():
         attributes, there = described(plan.path)
         held, seconds = plan.kept(there.n_surfaces), attributes["wall_seconds"]
-    shards = {
-        span: took for span, took in plan.shards(numbers=not plan.statistics).items() if span.first >= held
-    }
+    # Their numbers are compared with their checksums when they are read.
+    shards = {span: took for span, took in plan.shards(numbers=False).items() if span.first >= held}
     if [held, *(span.stop for span in shards)] != [*(span.first for span in shards), plan.total]:
         raise StoreError(f"{plan.folder}: blocks are missing")
     seconds += sum(shards.values())

@@ -6,7 +6,7 @@ whoever wrote the file.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from analytic.arrays import Array
 from mcgw.ensemble.results import GROUP, Tables
 from mcgw.errors import StoreError
-from mcgw.formats.gate import open_h5
+from mcgw.formats.gate import open_h5, opened
 from mcgw.store.h5_writing import FILETYPE, FORMAT, MOST_TEXT, PIECE, checksum, sha_of
 
 _ATTRIBUTES = (  # that this program writes; another one may add its own, which are not looked at
@@ -70,12 +70,18 @@ def read_tables(path: Path, group: str = "") -> Tables:
 
 
 def read_rows(files: Sequence[tuple[Path, int]], name: str, rows: slice) -> Array:
-    """Rows of a table in files, of so many surfaces each; of checksums those of chunks alone are compared."""
+    """Rows of a table in files that were looked at, of so many surfaces each.
+
+    Of checksums those of chunks are compared, and that of a table without chunks, if all of it is read.
+    """
     found, (start, stop, _) = list[Array](), rows.indices(sum(n for _, n in files))
     for path, n in files:
         if max(start, 0) < min(stop, n):
-            with _opened(path) as file:
-                found.append(file[name][max(start, 0) : min(stop, n)])
+            with _opened(path, opened) as file:
+                table = file[name]
+                found.append(table[max(start, 0) : min(stop, n)])
+                if not table.chunks and len(found[-1]) == len(table):
+                    _compare(table, found[-1:])
         start, stop = start - n, stop - n
     return found[0] if len(found) == 1 else np.concatenate(found)
 
@@ -105,12 +111,12 @@ def _text(table: h5py.Dataset, key: str) -> str:
 
 
 @contextmanager
-def _opened(path: Path) -> Iterator[h5py.File]:
+def _opened(path: Path, how: Callable[[Path], h5py.File] = open_h5) -> Iterator[h5py.File]:
     """Open a file; errors of HDF5 are one of the store, that names the file."""
     try:
         if not path.exists():
             raise StoreError("no longer exists; its run has ended, open the file again")
-        with open_h5(path) as file:
+        with how(path) as file:
             yield file
     except StoreError as error:
         text = str(error)
@@ -136,7 +142,8 @@ def table_names(file: h5py.File) -> list[str]:
 
 def attributes_in(file: h5py.File) -> dict[str, Any]:
     """Root attributes of an open file that this program writes: texts, numbers, lists of numbers."""
-    return {name: _plain_value(name, file.attrs) for name in _ATTRIBUTES if name in file.attrs}
+    attributes = file.attrs  # made anew whenever it is asked for
+    return {name: _plain_value(name, attributes) for name in _ATTRIBUTES if name in attributes}
 
 
 def _plain_value(name: str, attributes: Any) -> Any:

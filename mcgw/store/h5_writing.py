@@ -6,9 +6,10 @@ writes, and of name, type, shape, units, description and `sha256` of every table
 and the same numbers are good however another program has laid them out. `digest` is over the numbers and
 what they are of.
 
-A chunk has a checksum, which HDF5 writes and checks: a changed chunk is an error, not a number. It is
-compressed where that saves half of it. Numbers of contacts shrink to an eighth; but for its first digits a
-load is noise, of which compression saves a sixth and makes the writing take 25 times as long. Of load, area,
+A chunk has a checksum, which HDF5 writes and checks: a changed chunk is an error, not a number. Blocks have
+no chunks, for each of their tables is read at once, and compared with its own checksum. A chunk is compressed
+where that saves half of it. Numbers of contacts shrink to an eighth; but for its first digits a load is
+noise, of which compression saves a sixth and makes the writing take 25 times as long. Of load, area,
 stiffness and contacts, all compressed are 0.65 of the bytes, at 55 MB of numbers a second and thread; where
 only what shrinks by half is compressed 0.78, at 456 MB/s (``runs/bench/compression.py`` measures every way).
 So a file is a fifth larger than if all were compressed, and written eight times as fast. Gzip, for netCDF,
@@ -75,33 +76,47 @@ class SteadyFile(FileIO):
         return len(view)
 
 
-def write(path: Path, contents: Labelled, of: str = "", go_on: Callable[[], None] | None = None) -> None:
+def write(
+    path: Path,
+    contents: Labelled,
+    of: str = "",
+    go_on: Callable[[], None] | None = None,
+    *,
+    chunked: bool = True,
+) -> None:
     """Write a new file, some rows of a table at a time.
 
     `of` says what the numbers are of, which `digest` is over as well; `go_on` is called often, and raises if
-    this is to end, as OSError is if the disk does not take it.
+    this is to end, as OSError is if the disk does not take it. What soon goes into another file is not
+    `chunked`.
     """
     with closing(SteadyFile(path, "x+")) as raw:
         try:
             with h5py.File(raw, "w", libver=_LIBVER) as file:
-                _fill(file, contents, of, raw, go_on)
+                _fill(file, contents, of, raw, go_on, chunked)
         finally:
             if raw.error:  # which HDF5 reports as any of a dozen
                 raise raw.error
 
 
 def _fill(
-    file: h5py.File, contents: Labelled, of: str, raw: SteadyFile, go_on: Callable[[], None] | None
+    file: h5py.File,
+    contents: Labelled,
+    of: str,
+    raw: SteadyFile,
+    go_on: Callable[[], None] | None,
+    chunked: bool,
 ) -> None:
     heads: dict[str, Any] = {}
     drawn = {f"{GROUP}/{name}": Variable((), values, "", "") for name, values in contents.drawn.items()}
     for name, one in {**contents.coordinates, **contents.variables, **drawn}.items():
-        n, some = len(one.values), max(PIECE // one.values[:1].nbytes, 1)
+        n, together = len(one.values), getattr(one.values, "together", 1)
+        some = max(PIECE // (one.values[:1].nbytes * together), 1) * together
         for first in range(0, n, some):
             piece = one.values[first : first + some]
             values = np.ascontiguousarray(piece, piece.dtype.newbyteorder("<"))
             if not first:
-                data, sha = empty_table(file, name, n, values), sha_of(values)
+                data, sha = empty_table(file, name, n, values, chunked), sha_of(values)
             data[first : first + some] = values
             sha.update(values.reshape(-1))
             if raw.error:
@@ -145,9 +160,13 @@ def checksum(attributes: dict[str, Any], heads: dict[str, Any]) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def empty_table(file: h5py.File, path: str, rows: int, like: NDArray[Any]) -> h5py.Dataset:
+def empty_table(
+    file: h5py.File, path: str, rows: int, like: NDArray[Any], chunked: bool = True
+) -> h5py.Dataset:
     """Make a table of some rows like those of another, packed if that halves the size of its first rows."""
     shape, columns = like.shape[1:], max(math.prod(like.shape[1:]), 1)
+    if not chunked:
+        return file.create_dataset(path, (rows, *shape), like.dtype)
     fitting = max(_CHUNK // (8 * columns), 1)
     chunk = min(CHUNK_ROWS, 1 << fitting.bit_length() - 1, rows)
     sample = np.ascontiguousarray(like[: max(_SAMPLE // (8 * columns), 1)])

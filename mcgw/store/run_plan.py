@@ -90,13 +90,13 @@ def commit_shard(path: Path, run: str, span: Span, tables: Tables, seconds: floa
 def _write(path: Path, tables: Tables, about: dict[str, Any], expected: Expected = "anything") -> None:
     variables = {name: Variable((), values, "", "") for name, values in tables.items()}
     with whole_file(path, expected=expected) as temporary:
-        write(temporary, Labelled(variables, {}, about))
+        write(temporary, Labelled(variables, {}, about), chunked=False)
 
 
-def in_files(files: Sequence[tuple[Path, int]], names: Iterable[str]) -> Results:
+def in_files(files: Sequence[tuple[Path, int]], names: Iterable[str], together: int = 1) -> Results:
     """Return values that lie in files, of so many surfaces each; they are read when they are asked for."""
     total = sum(n for _, n in files)
-    return Results({name: Rows(total, partial(read_rows, files, name)) for name in names})
+    return Results({name: Rows(total, partial(read_rows, files, name), together) for name in names})
 
 
 class Plan:
@@ -189,7 +189,7 @@ class Plan:
         """Return what is held of each group in blocks, after the first surfaces of the file that are kept."""
         if not self.statistics:
             files = [(self.path, kept)] * (kept > 0) + [(self.shard_path(x), x.n) for x in spans]
-            return [in_files(files, self.scene.tables)]
+            return [in_files(files, self.scene.tables, self.reducers[0].rows)]
 
         def blocks() -> Iterator[tuple[int, Tables]]:
             """Statistics, each with the group that they are of."""
