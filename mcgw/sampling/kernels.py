@@ -97,10 +97,12 @@ add_weighted.__doc__ = (
 
 
 @njit(inline="always")
-def unfold(w: Any, first: Any, orders: Any) -> None:
-    """Make sums of polynomials of `orders` sums of products, which begin at ``w[first]``."""
+def unfold(moments: Any, row: Any, orders: Any, start: Any, stop: Any) -> None:
+    """Make sums of polynomials of sums of products, `orders` rows from `row` on, for some surfaces."""
     for j in range(6, orders):
-        w[first + j] = 2.0 * w[first + j] - w[first + 2 * ((j - 1) // 5 * 5) - j]
+        before = row + 2 * ((j - 1) // 5 * 5) - j
+        for surface in range(start, stop):
+            moments[row + j, surface] = 2.0 * moments[row + j, surface] - moments[before, surface]
 
 
 def chebyshev_transform(points: Array) -> Array:

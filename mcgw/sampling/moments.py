@@ -79,7 +79,7 @@ def add_compensated(totals: Any, w: Any, first: Any, size: Any) -> None:
 def _sum_cell(
     w: Any, carries: Any, seed: Any, surface: Any, cell: Any, n: Any, plain: Any, rooted: Any
 ) -> None:
-    """Leave the sums over the `n` uniforms of a cell in the workspace; very many in pieces."""
+    """Leave the sums of products over the `n` uniforms of a cell in the workspace; very many in pieces."""
     for k in range(PLAIN, WORDS):
         w[k] = 0.0
     for k in range(carries.size if n > _PIECE else 0):
@@ -96,8 +96,6 @@ def _sum_cell(
     for k in range(WORDS - PLAIN if n > _PIECE else 0):
         w[PLAIN + k] = carries[k] + carries[WORDS - PLAIN + k]
     w[PLAIN] = n
-    unfold(w, PLAIN, plain)
-    unfold(w, ROOTED, rooted)
 
 
 @njit(cache=True)
@@ -122,6 +120,8 @@ def _sum_cells(
                 moments[row + j, surface] = w[PLAIN + j] if n else 0.0
             for j in range(rooted):
                 moments[row + plain + j, surface] = w[ROOTED + j] if n else 0.0
+        unfold(moments, row, plain, start, stop)
+        unfold(moments, row + plain, rooted, start, stop)
         at += stop - start
 
 

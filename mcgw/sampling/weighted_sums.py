@@ -86,10 +86,8 @@ def _sum_cells(who: Any, kinds: Any, mesh: Any, table: Any, counts: Any, bounds:
         for kind in range(many.size):
             sums, row = _SUMS + (3 * kind + 1) * _MOST, starts[cell, kind]
             for j in range(many[kind]):
-                w[sums + j] += w[sums + _MOST + j]
-            unfold(w, sums, many[kind])
-            for j in range(many[kind]):
-                moments[row + j, surface] = w[sums + j]
+                moments[row + j, surface] = w[sums + j] + w[sums + _MOST + j]
+            unfold(moments, row, many[kind], surface, surface + 1)
 
 
 @dataclass(frozen=True)

@@ -56,23 +56,26 @@ class Response:
     def __matmul__(self, moments: Array) -> Array:
         """Quantities of every surface: moments (rows, surfaces) to (quantities, surfaces, separations)."""
         program = np.maximum(self.given, 0), self.ends, self.columns, self.values, self.answers
-        surfaces, flat = moments.shape[1], np.ascontiguousarray(moments).reshape(-1)
-        result = np.empty((self.shape[0], surfaces, self.shape[1]))
+        surfaces = moments.shape[1]
+        if surfaces < _WIDTH:
+            moments = np.pad(moments, ((0, 0), (0, _WIDTH - surfaces)))
+        n, flat = moments.shape[1], np.ascontiguousarray(moments).reshape(-1)
+        result = np.empty((self.shape[0], n, self.shape[1]))
 
         def share(ends: tuple[int, int]) -> None:
             table, sums = np.empty(self.answers.size * _WIDTH), np.empty(FOUR * _WIDTH)
             for first in range(*ends, _WIDTH):
-                _sweep(program, table, sums, flat, first, min(_WIDTH, ends[1] - first), result)
+                _sweep(program, table, sums, flat, min(first, n - _WIDTH), result)  # some of the last twice
 
-        in_threads(share, pieces(surfaces, _WIDTH))
-        return result
+        in_threads(share, pieces(n, _WIDTH))
+        return result[:, :surfaces]
 
     matrix = matrix_of
 
 
 @njit(cache=True, fastmath={"contract"})
-def _sweep(program: Any, table: Any, sums: Any, given: Any, first: Any, n: Any, result: Any) -> None:
-    """Take all steps for `n` surfaces from `first` on; the sum over a row has one order, in any block."""
+def _sweep(program: Any, table: Any, sums: Any, given: Any, first: Any, result: Any) -> None:
+    """Take all steps for 64 surfaces from `first` on; the sum over a row has one order, in any block."""
     rows, ends, columns, values, answers = program
     surfaces, separations, tile, width = np.uint64(result.shape[1]), result.shape[2], 0, np.uint64(_WIDTH)
     for step in range(ends.size):
@@ -82,21 +85,21 @@ def _sweep(program: Any, table: Any, sums: Any, given: Any, first: Any, n: Any, 
             if column < len(rows):
                 a, b, c, d = rows[column]
                 start = np.uint64(first)
-                _add(values[tile], given, start, surfaces, (a, b, c, d), sums, n)
+                _add(values[tile], given, start, surfaces, (a, b, c, d), sums)
             else:
                 a = FOUR * (column - len(rows))
-                _add(values[tile], table, np.uint64(0), width, (a, a + 1, a + 2, a + 3), sums, n)
+                _add(values[tile], table, np.uint64(0), width, (a, a + 1, a + 2, a + 3), sums)
             tile += 1
         for r in range(FOUR):
             answer, at = answers[step, r], np.uint64(FOUR * step + r) * width
-            for k in range(n):
+            for k in range(_WIDTH):
                 table[at + np.uint64(k)] = sums[r * _WIDTH + k]
-            for k in range(n if answer >= 0 else 0):
+            for k in range(_WIDTH if answer >= 0 else 0):
                 result[answer // separations, first + k, answer % separations] = sums[r * _WIDTH + k]
 
 
 @njit(cache=True, fastmath={"contract"})
-def _add(tile: Any, table: Any, start: Any, stride: Any, rows: Any, sums: Any, n: Any) -> None:
+def _add(tile: Any, table: Any, start: Any, stride: Any, rows: Any, sums: Any) -> None:
     """Add what a tile makes of four rows of a table, from `start` on in each.
 
     Places in the table are unsigned: for a signed one may count from its end, and the loop is three times
@@ -109,7 +112,7 @@ def _add(tile: Any, table: Any, start: Any, stride: Any, rows: Any, sums: Any, n
     a1, b1, c1, d1 = tile[1, 0], tile[1, 1], tile[1, 2], tile[1, 3]
     a2, b2, c2, d2 = tile[2, 0], tile[2, 1], tile[2, 2], tile[2, 3]
     a3, b3, c3, d3 = tile[3, 0], tile[3, 1], tile[3, 2], tile[3, 3]
-    for k in range(n):
+    for k in range(_WIDTH):
         i = np.uint64(k)
         a, b, c, d = table[ka + i], table[kb + i], table[kc + i], table[kd + i]
         sums[i] += (a0 * a + b0 * b) + (c0 * c + d0 * d)
@@ -217,7 +220,7 @@ def _tiles_of(lines: Ints, values: Array, first: int, end: int) -> tuple[Ints, I
     ends, columns = np.empty((end - first) // FOUR, dtype=np.int64), np.empty(most, dtype=np.int64)
     tiles = np.zeros((most, FOUR, FOUR))
     n = _fill(order, lines, values, first // FOUR, ends, columns, tiles)
-    return ends, columns[:n].copy(), tiles[:n].copy()
+    return ends, columns[:n], tiles[:n]
 
 
 @njit(cache=True)
