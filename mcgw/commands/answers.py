@@ -26,21 +26,21 @@ def show(
 
     example: mcgw show demo.h5
     """
-    from mcgw.errors import StoreError
-    from mcgw.reports.text import progress_of, summary, table_of
-    from mcgw.store.ensembles import open_results, read_attributes, unfinished, verify as verified
-    from mcgw.store.place import tidy
-
     if csv and (scene or digest or verify or plan):
         raise ValueError(f"--csv {csv}: belongs to the summary; leave out the other option")
     if not isinstance(file, Path):
-        from mcgw.reports.plan import plan_text  # imports the samplers
+        from mcgw.reports.plan import plan_text
 
         return print(plan_text(file))
     if plan:
         raise ValueError(
             f"{file}: --plan is of a scene (.toml); print its scene with mcgw show --scene {file}"
         )
+    from mcgw.errors import StoreError
+    from mcgw.reports.text import progress_of, summary, table_of
+    from mcgw.store.ensembles import open_results, read_attributes, unfinished, verify as verified
+    from mcgw.store.place import tidy
+
     tidy(file)
     if (begun := unfinished(file)) is not None and begun.axes:
         if verify or digest or csv:

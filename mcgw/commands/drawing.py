@@ -11,7 +11,7 @@ from mcgw.commands import kinds
 from mcgw.commands.outputs import details, news, notes
 
 if TYPE_CHECKING:
-    from mcgw.ensemble.simulation import Forecast
+    from mcgw.ensemble.forecast import Forecast
     from mcgw.scene.scene import Scene
 
 _LONG = 60.0  # seconds; longer runs state their duration beforehand
@@ -65,17 +65,16 @@ def run(
 
     example: mcgw run runs/demo.toml -o demo.h5
     """
-    from numba import get_num_threads
-
-    from mcgw.ensemble.simulation import after, forecast
+    from mcgw.ensemble.forecast import after, forecast
     from mcgw.formats.table import with_error
     from mcgw.jobs.running import run as drawn
+    from mcgw.machine.threads import THREADS
 
     ruled = scene.rel_err is not None or scene.max_seconds is not None
     with warnings.catch_warnings(), drawing(threads, jobs, dask, shard) as how:
         warnings.filterwarnings("ignore", ".* n_surfaces allows")  # said as a note, or by the forecast
-        if threads is not None and threads > get_num_threads():
-            notes(f"--threads {threads}: this machine has {get_num_threads()}; using all of them")
+        if threads is not None and threads > THREADS.get():
+            notes(f"--threads {threads}: this machine has {THREADS.get()}; using all of them")
         _tell_before(scene, forecast(scene), ruled=ruled, shared=shard is not None)
         ensemble = drawn(scene, output, **how)
     if shard is not None:
@@ -97,7 +96,7 @@ def run(
 def _tell_before(scene: "Scene", expected: "Forecast", *, ruled: bool, shared: bool) -> None:
     """Say what a rule needs, or how long the run will take, if more than a minute."""
     from mcgw.ensemble.drawing import seconds_per_surface
-    from mcgw.ensemble.simulation import before, in_words, rough_seconds
+    from mcgw.ensemble.forecast import before, in_words, rough_seconds
     from mcgw.sampling.samplers import sampler_of
 
     sampler, m = sampler_of(scene), scene.n_surfaces
@@ -149,10 +148,9 @@ def sweep(
     example: mcgw sweep runs/demo.toml --over grading.gamma=0.2:2:10 -o gamma.h5
     """
     from mcgw.jobs.sweeping import sweep as drawn
-    from mcgw.reports.plan import sweep_plan_text
     from mcgw.reports.text import ratios_in_words
     from mcgw.sweeps.axes import axes_of
-    from mcgw.sweeps.points import Points
+    from mcgw.sweeps.points import Points, sweep_plan_text
 
     if plan:
         return print(sweep_plan_text(Points.of(scene, axes_of(over, zipped=zip))))

@@ -8,6 +8,7 @@ from argparse import Namespace
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -122,6 +123,13 @@ def file_in(metavar: str = "", about: str = "", opened: Callable[[Any, Call], An
     return Kind(metavar, about, "in", read=read)
 
 
+def _recorded_seed(path: Path) -> int | None:
+    """Return the seed of the ensemble that grows, if there is one."""
+    from mcgw.store.place import recorded_scene
+
+    return getattr(recorded_scene(path), "seed", None)
+
+
 def scene_file(*, others: bool = False, cautious: Literal["brief", "full", ""] = "brief") -> Kind:
     """Return the kind of the file of a scene, read, with the changes of --set.
 
@@ -131,7 +139,6 @@ def scene_file(*, others: bool = False, cautious: Literal["brief", "full", ""] =
 
     def opened(path: Path, call: Call) -> Any:
         from mcgw.scene.scene_file import files_of, load_scene
-        from mcgw.store.place import recorded_scene
 
         changes = call.args.set
         if others and path.suffix.lower() != ".toml":
@@ -140,8 +147,7 @@ def scene_file(*, others: bool = False, cautious: Literal["brief", "full", ""] =
             return _read(path, call)
         pairs = (pair(text, "--set", "KEY=VALUE, such as grading.gamma=2") for text in changes or ())
         changed = {key: as_value(value) for key, value in pairs}
-        grown = next((each.path for each in call.outputs if each.grows), None)
-        seed = None if grown is None else lambda: getattr(recorded_scene(grown), "seed", None)
+        seed = next((partial(_recorded_seed, each.path) for each in call.outputs if each.grows), None)
         scene = load_scene(path, changes=changed, seed=seed)
         call.inputs.extend(files_of(path))
         if cautious:

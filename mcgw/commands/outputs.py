@@ -71,8 +71,7 @@ def _same_file(one: Path, other: Path) -> bool:
 
 def _faults(output: Output, others: Iterable[Output]) -> Iterator[str]:
     """Why a file may not be written: what is read, a run, another output, what it would replace."""
-    from mcgw.formats.named_files import HDF5 as SIGNATURE
-    from mcgw.store.ownership import LOCK_FILES, parts_of
+    from mcgw.formats.files import HDF5, LOCK_FILES, parts_of
 
     path, place = output.path, Path(os.path.realpath(output.path))
     for read in _inputs.get():
@@ -94,7 +93,7 @@ def _faults(output: Output, others: Iterable[Output]) -> Iterator[str]:
     if not path.is_file():
         return
     with open(path, "rb") as file:
-        if file.read(len(SIGNATURE)) != SIGNATURE:
+        if file.read(len(HDF5)) != HDF5:
             return
     if _holds_results(path):
         yield "is an ensemble of mcgw, which this would replace"

@@ -14,13 +14,14 @@ from mcgw.elasticity.multilevel import FEWEST, Design, Mean, design, difference,
 from mcgw.elasticity.solves import Solves
 from mcgw.elasticity.sources import maps_of
 from mcgw.errors import RunError
+from mcgw.formats.files import parts_of
 from mcgw.formats.table import Column, Shown, Table
 from mcgw.machine.process import Progress, told
 from mcgw.maps.synthetic import Spectrum
 from mcgw.maps.topography import Topography
 from mcgw.scene.kinds import argument
 from mcgw.scene.scene import Scene
-from mcgw.store.ownership import locked, parts_of
+from mcgw.store.ownership import locked
 
 _UNITS = {"area": "m^2", "stiffness": "N/m", "conductance": "m", "mean_gap": "m", "pressure": "Pa"}
 

@@ -12,16 +12,14 @@ from operator import add
 from time import perf_counter
 from typing import Any, TypeVar
 
-import numba
 import numpy as np
 
 from analytic import quantity_of
 from mcgw.ensemble.results import CHUNK_ROWS, Results, Tables, joined
-from mcgw.machine.compiling import in_threads, pieces
 from mcgw.machine.process import check_memory
+from mcgw.machine.threads import THREADS, in_threads, pieces
 from mcgw.sampling.block import GROUP, Source, Sums
 from mcgw.sampling.expected import Expected
-from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene import Scene
 
 _Drawn = TypeVar("_Drawn")
@@ -44,10 +42,10 @@ def drawn_blocks(sampler: Source[_Drawn], first: int, stop: int, size: int) -> I
     Each thread draws its own blocks. Sharing the work within a block costs a wake-up per step, which pays
     only for a few, huge surfaces.
     """
-    step = size * numba.get_num_threads() if size > 1 else 1  # a surface that is a block may fill the memory
+    step = size * THREADS.get() if size > 1 else 1  # a surface that is a block may fill the memory
     for start in range(first, stop, step):
         n = min(step, stop - start)
-        ends = pieces(n, GROUP if n >= GROUP * numba.get_num_threads() else 1)
+        ends = pieces(n, GROUP if n >= GROUP * THREADS.get() else 1)
         yield from in_threads(lambda span: sampler.block(*span), [(start + a, b - a) for a, b in ends])
 
 
@@ -78,7 +76,7 @@ def block_size(scene: Scene, sampler: Source[Any]) -> int:
 def seconds_per_surface(scene: Scene, sampler: Source[Any]) -> float:
     """Median wall time of drawing one surface in a block, after a warm-up."""
     size = min(block_size(scene, sampler), 256)
-    n = size * numba.get_num_threads() if size > 1 else 1
+    n = size * THREADS.get() if size > 1 else 1
     list(drawn_blocks(sampler, 0, n, size))
     times = []
     for _ in range(3):
@@ -103,7 +101,11 @@ class Values:
     @cached_property
     def sampler(self) -> Any:
         """The scene's."""
-        return self.expected or sampler_of(self.scene)
+        if self.expected:
+            return self.expected
+        from mcgw.sampling.samplers import sampler_of  # compiled loops, which are not needed to ask for sizes
+
+        return sampler_of(self.scene)
 
     @cached_property
     def rows(self) -> int:

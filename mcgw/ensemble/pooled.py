@@ -17,7 +17,8 @@ import numpy as np
 from analytic import quantity_of
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.results import Held, Tables
-from mcgw.machine.compiling import in_threads, njit
+from mcgw.machine.compiling import njit
+from mcgw.machine.threads import in_threads
 
 Values = dict[str, Array]
 

@@ -13,9 +13,9 @@ import numpy as np
 from analytic import PER_AREA, Hertz, MeasuredHeights, MeasuredRadii, Quantity, quantity_of
 from analytic.arrays import Array, hold
 from mcgw.ensemble.at_load import NEGATIVE, mean_surface, quantities_at
+from mcgw.ensemble.forecast import surfaces_at_loads
 from mcgw.ensemble.results import joined
 from mcgw.ensemble.separation import LOWEST, Asperities
-from mcgw.ensemble.simulation import surfaces_at_loads
 from mcgw.ensemble.solved import Solution
 from mcgw.machine.process import Progress, told
 from mcgw.scene.kinds import argument, as_toml, check_object

@@ -24,8 +24,16 @@ from mcgw.errors import StoreError
 State = tuple[int, int, int]
 Expected = State | None | Literal["anything"]
 
+LOCK_FILES = ("holder", "lock.db")  # of the folder of a run
+HDF5 = b"\x89HDF\r\n"  # how such a file begins
+
 Waiting = tuple[Path, Path, Expected]  # its temporary name, its own, and which file has that now
 _waiting: ContextVar[list[Waiting] | None] = ContextVar("_waiting", default=None)
+
+
+def parts_of(path: Path) -> Path:
+    """Folder of the run that makes a file."""
+    return path.with_name(f"{path.name}.parts")
 
 
 def state_of(path: Path) -> State | None:

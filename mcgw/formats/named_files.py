@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 from mcgw.errors import StoreError
 from mcgw.formats.units import signed
 
-HDF5 = b"\x89HDF\r\n"  # how such a file begins
 _UNSOUND = (EOFError, KeyError, MemoryError, OverflowError, SyntaxError, TokenError, TypeError, ValueError)
 _MOST_PARTS = 100  # of a dotted key: the parser's time grows as their square
 _LONG_KEY = re.compile(rf"(?<![\w\"'-])(?:[\w\"'-]++[ \t]*+\.[ \t]*+){{{_MOST_PARTS}}}")

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from mcgw.ensemble.results import Labelled
 from mcgw.errors import RunError, StoppedError, StoreError
-from mcgw.formats.files import State, state_of
+from mcgw.formats.files import State, parts_of, state_of
 from mcgw.jobs.executors import drive
 from mcgw.machine.process import Signals, heed_signals
 from mcgw.store.ensembles import described, open_results
-from mcgw.store.ownership import difference, locked, parts_of
+from mcgw.store.ownership import difference, locked
 from mcgw.store.place import finished, put, remove_run, tidy
 from mcgw.store.run_plan import RECORD, Plan, Span, commit_shard
 

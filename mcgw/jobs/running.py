@@ -7,7 +7,7 @@ from time import monotonic, perf_counter
 from typing import Any, overload
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.simulation import forecast, without_rule
+from mcgw.ensemble.forecast import forecast, without_rule
 from mcgw.errors import RunError, in_one_line
 from mcgw.jobs.blocks import Done, in_blocks
 from mcgw.machine.process import Progress, Signals, heed_signals, told

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 from mcgw.jobs.running import make, share_of
-from mcgw.machine.compiling import use_threads
 from mcgw.machine.process import Progress, told
+from mcgw.machine.threads import use_threads
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene, storable
 from mcgw.store.ensembles import open_sweep

@@ -1,33 +1,24 @@
-"""Compiled loops, kept on the disk by Numba; and calls of them side by side in threads.
+"""Compiled loops, kept on the disk by Numba.
 
 A process that compiles holds a lock meanwhile: Numba numbers the files of a loop, and two processes that
 compile at once may give two versions of it one number. Then one is loaded where the other is asked for, a
 loop that sums fewer moments, without a word. Who waits for the lock finds the loops compiled.
-
-No loop of the sampler is compiled to run in parallel: numba's threads take milliseconds to wake, and not all
-of its kinds may be called from several threads at once.
 """
 
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
-from itertools import pairwise
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numba
-import numpy as np
 from filelock import FileLock, SoftFileLock
 from numba.core import event
 
 from mcgw.errors import RunError
 from mcgw.machine.process import waited_for
-
-_Item = TypeVar("_Item")
-_Result = TypeVar("_Result")
 
 if numba.config.DISABLE_JIT:  # type: ignore[attr-defined, unused-ignore]
     raise RunError(
@@ -91,44 +82,3 @@ class _Told(event.Listener):  # type: ignore[misc, unused-ignore]
 if loops_folder() and FileLock is not SoftFileLock:  # a soft lock would outlive a process that is killed
     event.register("numba:compiler_lock", _OneCompiles())
 event.register("numba:compile", _Told())
-
-
-@contextmanager
-def use_threads(threads: int | None) -> Iterator[None]:
-    """Set the number of threads of the loops that this thread calls, at most those available."""
-    if threads is not None and not (isinstance(threads, int) and threads >= 1):
-        raise ValueError(f"threads = {threads!r}: give a whole number >= 1")
-    before = numba.get_num_threads()
-    numba.set_num_threads(min(threads or before, before))
-    try:
-        yield
-    finally:
-        numba.set_num_threads(before)
-
-
-def in_threads(call: Callable[[_Item], _Result], items: Sequence[_Item], *, least: int = 2) -> list[_Result]:
-    """Call for every item, on as many threads as numba has been told to use; results in their order.
-
-    Items are distributed in runs of equal length, of which the caller does the first itself. If it waited,
-    the system would wake its helpers on the one core that has just come free, one after the other, and move
-    them to another core only milliseconds later. What is called lets go of Python's lock while it computes;
-    calls within a call run alone. Fewer than `least` items are not worth waking a thread.
-    """
-    threads = min(numba.get_num_threads(), len(items)) if len(items) >= least else 1
-    if threads <= 1:
-        return [call(item) for item in items]
-    runs = [[items[i] for i in places] for places in np.array_split(np.arange(len(items)), threads)]
-    with ThreadPoolExecutor(threads - 1, initializer=numba.set_num_threads, initargs=(1,)) as pool:
-        others = [pool.submit(list, map(call, some)) for some in runs[1:]]
-        with use_threads(1):
-            results = [call(item) for item in runs[0]]
-        for one in others:
-            results += one.result()
-    return results
-
-
-def pieces(n: int, least: int) -> list[tuple[int, int]]:
-    """Cut ``0 ... n - 1`` for the threads there are, at multiples of `least`."""
-    groups = -(-n // least)
-    ends = np.linspace(0, groups, min(numba.get_num_threads(), max(groups, 1)) + 1).astype(np.int64) * least
-    return list(pairwise(np.minimum(ends, n).tolist()))

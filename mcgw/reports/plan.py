@@ -1,18 +1,14 @@
-"""Cost of a scene or a sweep, estimated before anything is drawn."""
-
-from time import perf_counter
+"""Cost of a scene, estimated before anything is drawn."""
 
 from analytic import QUANTITIES
-from mcgw.ensemble.drawing import reducer_of, seconds_per_surface
+from mcgw.ensemble.drawing import reducer_of
+from mcgw.ensemble.forecast import MOST_SURFACES, forecast, in_words, rough_seconds
 from mcgw.ensemble.intervals import laws_are_quick
-from mcgw.ensemble.simulation import MOST_SURFACES, forecast, in_words, rough_seconds
 from mcgw.machine.terminal import listed, one_line
 from mcgw.sampling.expected import Expected, expected
-from mcgw.sampling.shared import shared
-from mcgw.scene.ensemble import promise_of
+from mcgw.scene.ensemble import PROMISES
 from mcgw.scene.scene import Scene, storable
 from mcgw.scene.writing import contact_facts
-from mcgw.sweeps.points import Points
 
 _WORTH, _CROWD = 1.5, 300  # times faster, to be told; asperities of a cell, for crowds to pay
 
@@ -48,7 +44,7 @@ def plan_text(scene: Scene) -> str:
         facts.append(("", "means alone: no surfaces, scene.theory is exact"))
     left_out = [name for name in QUANTITIES if name not in scene.quantities]
     spared = scene.n_asperities - scene.touching
-    not_done = [line.format(spared=spared) for line in promise_of(known.name).not_done]
+    not_done = [line.format(spared=spared) for line in PROMISES[known.name].not_done]
     if known.cells and not known.moments:
         not_done.append("no heights are drawn: contacts follow from the numbers in the cells")
     if left_out:
@@ -67,26 +63,3 @@ def _accuracy(scene: Scene, known: Expected, surfaces: int) -> str:
     times = rough_seconds(scene.replace(sampler="aggregate"), surfaces) / rough_seconds(scene, surfaces)
     bought = "buys" if scene.accuracy else "1e-3 would buy"
     return f"{given}; {bought} crowded cells, {times:.2g} x the time" if times <= 1 / _WORTH else given
-
-
-def sweep_plan_text(asked: Points) -> str:
-    """Return the plan in words; the group that takes the longest is tried out, of which nothing is kept."""
-    groups = asked.groups
-    scenes = sum(len(group.computed) for group in groups)
-    touching = sum(group.scene.n_surfaces * group.scene.touching for group in groups)
-    work = [group.scene.n_surfaces * group.work for group in groups]
-    longest = groups[work.index(max(work))]
-    started = perf_counter()
-    source = shared(longest.computed)
-    preparing = (perf_counter() - started) * scenes / len(longest.computed)
-    surfaces = longest.scene.n_surfaces * sum(work) / max(work)
-    drawing = seconds_per_surface(longest.scene, source) * surfaces
-    facts = [
-        *((key, asked.axes.summary(key)) for key in asked.axes.keys),
-        ("groups", f"{len(groups)} that share their surfaces"),
-        ("surfaces", f"{sum(x.scene.n_surfaces for x in groups)}, with {touching:.4g} asperities that touch"),
-        ("computed", f"{scenes} scenes; the others are weighted means of them"),
-        ("time", f"about {in_words(preparing + drawing)} on this machine"),
-    ]
-    title = one_line(str(asked.document["title"])) or "sweep"
-    return "\n".join([f"{title}: {asked.axes.size} scenes", *listed(facts)])

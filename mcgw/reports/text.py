@@ -17,11 +17,11 @@ from mcgw.formats.table import SEPARATION, Column, Table, joined, stacked
 from mcgw.machine.terminal import listed
 from mcgw.scene.scene import Scene
 from mcgw.scene.writing import accuracy_facts, contact_facts, joint_text
-from mcgw.statistics.comparison import Comparison
-from mcgw.store.run_plan import Plan
 from mcgw.sweeps.axes import Axes
 
 if TYPE_CHECKING:
+    from mcgw.statistics.comparison import Comparison
+    from mcgw.store.run_plan import Plan
     from mcgw.sweeps.sweep import Sweep
 
 _AT_LOADS = ("contact law", "bodies", "interaction", "joint")  # what of the contacts counts at a given load
@@ -216,7 +216,7 @@ def summary(result: "Ensemble | Sweep", attributes: dict[str, Any], full: bool =
     return "\n".join(lines)
 
 
-def comparison_text(comparison: Comparison) -> str:
+def comparison_text(comparison: "Comparison") -> str:
     """Monte Carlo beside theory at some separations."""
     scene = comparison.ensemble.scene
     facts = [f"{word}: {what}" for word, what in (*contact_facts(scene), *accuracy_facts(scene))]
@@ -243,7 +243,7 @@ def table_of(result: "Ensemble | Sweep") -> Table:
     return stacked({name: statistics_table(result, name) for name in result.scene.answers}, "quantity")
 
 
-def progress_of(plan: Plan) -> str:
+def progress_of(plan: "Plan") -> str:
     """How far a sweep has come."""
     axes, total = Axes.from_text(plan.axes), plan.total
     missing = sum(span.n for span in plan.missing(0, plan.shards()))

@@ -10,7 +10,7 @@ from mcgw.sampling.counted import counts_of, extra_heights, table_of
 from mcgw.sampling.direct import Direct, asperity_sums, generator
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, REST, uniforms
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.ensemble import promise_of
+from mcgw.scene.ensemble import PROMISES
 from mcgw.scene.scene import Scene, storable
 
 Listed = tuple[Array, Array | None]  # reduced heights; radii over the surface's, where summits have their own
@@ -92,7 +92,7 @@ def listing_sampler(scene: Scene) -> Sampler:
         If it does not draw asperities one by one.
     """
     sampler = sampler_of(scene)
-    if not promise_of(sampler.name).one_by_one:
+    if not PROMISES[sampler.name].one_by_one:
         raise ValueError(f'sampler = "{sampler.name}" keeps no heights; use "cells", "tail" or "direct"')
     return sampler
 

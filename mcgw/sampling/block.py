@@ -1,11 +1,13 @@
 """What every sampler has, and what it gives."""
 
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from analytic.arrays import Array
-from mcgw.sampling.cells import Mesh
 from mcgw.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from mcgw.sampling.cells import Mesh
 
 Sums = dict[str, Array]  # of some consecutive surfaces each quantity, SI, shape (surfaces, separations)
 Drawn = TypeVar("Drawn", covariant=True)
@@ -37,7 +39,7 @@ class Sampler(Source[Sums]):
 
     name: str  # one of `mcgw.scene.ensemble.SAMPLERS`, never "auto"
     scene: Scene  # what to simulate
-    mesh: Mesh  # its cells; with none, every asperity is drawn by itself
+    mesh: "Mesh"  # its cells; with none, every asperity is drawn by itself
 
     @property
     def distance(self) -> float:

@@ -19,24 +19,22 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from analytic import Grading, HeightLaw, PiecewiseSeries, bends
+from analytic import Grading, HeightLaw, PiecewiseSeries
 from analytic.arrays import Array
 from analytic.quadrature import gauss_legendre
 from mcgw.machine.process import kept
 from mcgw.sampling.kernels import chebyshev_transform, product
-from mcgw.sampling.spacing import refined, spaced
-from mcgw.sampling.stretches import SMALLEST, begins_and_breaks, losses
+from mcgw.sampling.spacing import edges_before_grading
+from mcgw.sampling.stretches import SMALLEST, losses
 from mcgw.scene.ensemble import EXACT
 from mcgw.scene.scene import Scene
 
-_RARE = 0.1  # asperities a surface that may be expected beyond the cells, on either side
 _CONVERGED = 1e-9  # a step of Newton whose square is nothing
 _SHORT, _MOST_HALVINGS = 16, 60  # terms for a grading on a cell, and how often it is cut to get there
 _DIGITS = 4.0  # of a height that coefficients without meaning may seem to be worth
 _EVEN, _LEAST = 4.0, 1 / 16  # see `tolerances`
 _NARROW = 2.0**-6  # cells that are not cut because the modulus falls
 _TOGETHER = 64  # cells whose densities stay in the cache
-_CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
 
 _ORDER = 20
 NODES = chebyshev.chebpts1(_ORDER)
@@ -83,24 +81,6 @@ def mesh_of(scene: Scene, given: Sequence[float] = (), *, split: bool = True) ->
     return _mesh(scene.heights, float(scene.lowest), edges.tobytes())
 
 
-def edges_before_grading(scene: Scene, given: Sequence[float] = (), *, split: bool = True) -> Array:
-    """Return the edges of the cells of `mesh_of` before those of a grading with kinks; none: no cell."""
-    law = scene.heights
-    low, high = _range(law, _RARE / scene.n_asperities)
-    low = max(low, scene.lowest)
-    if not low < high:
-        return np.empty(0)
-    begins, breaks = np.array(scene.all_separations), np.empty(0)
-    if not scene.hertzian:
-        begins, breaks = begins_and_breaks(scene, low, high)
-    marks = np.unique([low, *begins, *breaks, *bends(scene.modulus, low, high), *law.breaks, *given, high])
-    marks = marks[(low <= marks) & (marks <= high)]
-    if len(given):
-        return refined(law, begins, marks)
-    asked = (part.tobytes() for part in (begins, breaks, marks))
-    return spaced(law, scene.n_asperities if split else 0, *asked)  # whatever the grading
-
-
 def cut(scene: Scene, mesh: Mesh, starts: Array) -> Mesh:
     """Cut the cells that begin at these heights in four, or towards where contacts are lost."""
     cell = np.searchsorted(mesh.edges, starts)
@@ -129,31 +109,6 @@ def no_cells(scene: Scene) -> Mesh:
     return Mesh(
         np.empty(0), np.empty(0), np.empty((_ORDER, 0)), 0.0, float(scene.heights.sf(np.array(scene.lowest)))
     )
-
-
-@kept
-def _range(law: HeightLaw, share: float) -> tuple[float, float]:
-    """Where the cells lie: at most this share of all heights on either side of them.
-
-    Rounded to a sixteenth, so that it does not hang on the last digit of an inverse distribution.
-    """
-    rare = np.array(min(share, 0.5))
-    bottom, top = float(law.ppf(rare)), float(law.isf(rare))
-    low, high = np.floor(16 * bottom) / 16, np.ceil(16 * top) / 16
-    if low <= law.support[0]:
-        low = law.support[0]
-        if low in law.singular:
-            low += _power_of_two_below(bottom - low)
-    if high >= law.support[1]:
-        high = law.support[1]
-        if high in law.singular:
-            high -= _power_of_two_below(high - top)
-    return float(low), float(high)
-
-
-def _power_of_two_below(distance: float) -> float:
-    """Round down; far enough from the end that heights next to it are still told apart."""
-    return 2.0 ** math.floor(math.log2(max(distance, _CLOSEST)))
 
 
 def _resolving(scene: Scene, edges: Array) -> Array:

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic import quantity_of
+from analytic import MeasuredHeights, quantity_of
 from analytic.arrays import Array, Ints
-from mcgw.sampling.cells import edges_before_grading
-from mcgw.sampling.samplers import name_of
-from mcgw.sampling.spacing import expected_orders, price
+from mcgw.sampling.spacing import edges_before_grading, expected_orders, price
 from mcgw.sampling.stretches import begins_and_breaks
+from mcgw.scene.ensemble import PROMISES
 from mcgw.scene.scene import Scene
 
 # Seconds of one thread, within a factor of two on machines of the last years: of a surface, an asperity in a
@@ -33,6 +32,23 @@ class Expected:
     moments: int  # alike
     draws: float  # numbers drawn
     seconds: float  # of one thread, within a factor of two or so
+
+
+def name_of(scene: Scene) -> str:
+    """Return the exact sampler that a scene asks for; `accuracy` may buy another one than ``cells``.
+
+    For ``auto`` the first that fits: cells, unless most of them would be empty (`runs/bench/auto.py`).
+    """
+    if scene.sampler != "auto":
+        return scene.sampler
+    most = min(5 + len(scene.separations) / 20, 20)
+    few = scene.touching < most
+    names = ("tail", "cells", "direct") if few else ("cells", "tail", "direct")
+    # Where two of these meet, each summit has breaks of its own.
+    breaks = (scene.summits is not None) + (not scene.hertzian)
+    listed = isinstance(scene.heights, MeasuredHeights)
+    promises = ((name, PROMISES[name]) for name in names)
+    return next(x for x, p in promises if (p.own_laws or breaks < 2) and not (p.needs_density and listed))
 
 
 def expected(scene: Scene) -> Expected:

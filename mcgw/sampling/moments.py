@@ -15,10 +15,10 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numba import get_num_threads
 
 from analytic.arrays import Array, Ints
-from mcgw.machine.compiling import in_threads, njit
+from mcgw.machine.compiling import njit
+from mcgw.machine.threads import THREADS, in_threads
 from mcgw.sampling.kernels import BUFFER, PLAIN, ROOTED, TOGETHER, WORDS, add_uniforms, unfold
 from mcgw.sampling.philox import CELLS, centred
 from mcgw.sampling.spacing import price
@@ -134,7 +134,7 @@ def in_runs_of_cells(counts: Ints, orders: Ints, each: Array | float, sum_run: C
     counts = np.where(orders.any(axis=1, keepdims=True), counts, 0)  # what nobody asks for is not drawn
     moments = np.empty((int(orders.sum()), counts.shape[1]))
     work = np.concatenate([[0.0], np.cumsum(_START * counts.shape[1] + counts.sum(axis=1) * each)])
-    threads = get_num_threads() if work[-1] > _ALONE else 1
+    threads = THREADS.get() if work[-1] > _ALONE else 1
     ends = np.linspace(0, work[-1], threads + 1)  # counted through the surfaces of each cell in turn
     places = np.interp(ends, work, counts.shape[1] * np.arange(len(work))).astype(np.int64)
     in_threads(lambda some: sum_run(counts, some, moments), list(pairwise(places.tolist())))

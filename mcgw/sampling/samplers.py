@@ -17,14 +17,14 @@ from functools import partial
 
 import numpy as np
 
-from analytic import MeasuredHeights, quantity_of
+from analytic import quantity_of
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.cells import Mesh, cut, mesh_of, no_cells
 from mcgw.sampling.counted import Counted, table_of
 from mcgw.sampling.direct import Direct
+from mcgw.sampling.expected import name_of
 from mcgw.sampling.response.response import parts_of, response_of
 from mcgw.sampling.response.walk import UnresolvedError
-from mcgw.scene.ensemble import promise_of
 from mcgw.scene.scene import Scene, storable
 
 _GAUSSIAN, _WORTH = 300, 1.5  # asperities that a crowded cell takes as long as; times that much faster
@@ -55,23 +55,6 @@ def sampler_of(scene: Scene) -> Sampler:
         if scene.sampler != "auto":
             raise
         return tail_of(scene)
-
-
-def name_of(scene: Scene) -> str:
-    """Return the exact sampler that a scene asks for; `accuracy` may buy another one than ``cells``.
-
-    For ``auto`` the first that fits: cells, unless most of them would be empty (`runs/bench/auto.py`).
-    """
-    if scene.sampler != "auto":
-        return scene.sampler
-    most = min(5 + len(scene.separations) / 20, 20)
-    few = scene.touching < most
-    names = ("tail", "cells", "direct") if few else ("cells", "tail", "direct")
-    # Where two of these meet, each summit has breaks of its own.
-    breaks = (scene.summits is not None) + (not scene.hertzian)
-    listed = isinstance(scene.heights, MeasuredHeights)
-    promises = ((name, promise_of(name)) for name in names)
-    return next(x for x, p in promises if (p.own_laws or breaks < 2) and not (p.needs_density and listed))
 
 
 def distance_of(scene: Scene) -> float:

@@ -17,9 +17,10 @@ from analytic import Exponential, Homogeneous, MeasuredRadii, quantity_of
 from mcgw.sampling.block import Sampler, Sums
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.counted import Counted
+from mcgw.sampling.expected import name_of
 from mcgw.sampling.moments import Layout
 from mcgw.sampling.response.walk import UnresolvedError
-from mcgw.sampling.samplers import cells_of, name_of, sampler_of, tail_of
+from mcgw.sampling.samplers import cells_of, sampler_of, tail_of
 from mcgw.scene.scene import Scene
 
 

@@ -6,14 +6,18 @@ distance to the next separation below need about fifteen, cells half as wide ten
 geometrically from a separation upwards, and how fast, and to how many, is chosen for each gap.
 """
 
+import math
 from bisect import bisect_left
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from analytic import HeightLaw
+from analytic import HeightLaw, bends
 from analytic.arrays import Array, Ints
 from mcgw.machine.process import kept
+from mcgw.sampling.stretches import begins_and_breaks
+from mcgw.scene.scene import Scene
 
 DIGITS = 11.4  # that moments must give for values to the last digit: of a law, or of the sum of a surface
 SURE = 400  # so many expected contacts are never fewer than half
@@ -22,11 +26,56 @@ _MORE = 8  # cells than the fewest possible
 _ROUNDING = 1e-9  # of the width of a cell
 _FAR, _NARROWER = 2.0, 0.75  # spans from a root of the laws of contact, and what is left of one nearer by
 _TIE = 1e-9  # share of a price that is no difference
+_RARE = 0.1  # asperities a surface that may be expected beyond the cells, on either side
+_CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
 
 # Prices, in asperities that give ten moments; found when the loops took eight numbers at a time. They
 # take four now, and `runs/bench/prices.py` finds cells cheaper and many moments dearer, by up to a half.
 # Other prices would make other cells, and so other draws.
 _CELL, _TWO_MORE, _FIVE_MORE, _ROOT, _FIVE_ROOTS_MORE = 250.0, 0.1, 0.25, 0.3, 0.2
+
+
+def edges_before_grading(scene: Scene, given: Sequence[float] = (), *, split: bool = True) -> Array:
+    """Return the edges of the cells of `mesh_of` before those of a grading with kinks; none: no cell."""
+    law = scene.heights
+    low, high = _range(law, _RARE / scene.n_asperities)
+    low = max(low, scene.lowest)
+    if not low < high:
+        return np.empty(0)
+    begins, breaks = np.array(scene.all_separations), np.empty(0)
+    if not scene.hertzian:
+        begins, breaks = begins_and_breaks(scene, low, high)
+    marks = np.unique([low, *begins, *breaks, *bends(scene.modulus, low, high), *law.breaks, *given, high])
+    marks = marks[(low <= marks) & (marks <= high)]
+    if len(given):
+        return refined(law, begins, marks)
+    asked = (part.tobytes() for part in (begins, breaks, marks))
+    return spaced(law, scene.n_asperities if split else 0, *asked)  # whatever the grading
+
+
+@kept
+def _range(law: HeightLaw, share: float) -> tuple[float, float]:
+    """Where the cells lie: at most this share of all heights on either side of them.
+
+    Rounded to a sixteenth, so that it does not hang on the last digit of an inverse distribution.
+    """
+    rare = np.array(min(share, 0.5))
+    bottom, top = float(law.ppf(rare)), float(law.isf(rare))
+    low, high = np.floor(16 * bottom) / 16, np.ceil(16 * top) / 16
+    if low <= law.support[0]:
+        low = law.support[0]
+        if low in law.singular:
+            low += _power_of_two_below(bottom - low)
+    if high >= law.support[1]:
+        high = law.support[1]
+        if high in law.singular:
+            high -= _power_of_two_below(high - top)
+    return float(low), float(high)
+
+
+def _power_of_two_below(distance: float) -> float:
+    """Round down; far enough from the end that heights next to it are still told apart."""
+    return 2.0 ** math.floor(math.log2(max(distance, _CLOSEST)))
 
 
 @kept

@@ -31,19 +31,14 @@ class Promise:
 _UNTOUCHED = "{spared:.4g} asperities per surface lie below every separation and are not drawn"
 _CROWDED = "in crowded cells, Gaussian moments are drawn instead of asperities"
 
-_PROMISES = {
+PROMISES = {
+    "auto": Promise(own_laws=True),  # it takes one that promises all
     "direct": Promise(own_laws=True),
     "tail": Promise(own_laws=True, needs_density=True, not_done=(_UNTOUCHED,)),
     "cells": Promise(needs_density=True, not_done=(_UNTOUCHED,)),
     "aggregate": Promise(one_by_one=False, needs_density=True, not_done=(_UNTOUCHED, _CROWDED)),
 }
-SAMPLERS = ("auto", *_PROMISES)
-
-
-def promise_of(sampler: str) -> Promise:
-    """Return what a sampler promises; ``auto`` takes one that promises all."""
-    return _PROMISES.get(sampler, Promise(own_laws=True))
-
+SAMPLERS = tuple(PROMISES)
 
 _KNOWN_TO = "give a number > 0 and at most 0.1; beyond that there are too few contacts for an interval"
 _SHARE = Number("1", high=0.1, advice=_KNOWN_TO)
@@ -114,7 +109,7 @@ class Sampling:
                 "change it, or surface.eta and surface.nominal_area"
             )
         if isinstance(scene.heights, analytic.MeasuredHeights):
-            if promise_of(self.sampler).needs_density:
+            if PROMISES[self.sampler].needs_density:
                 yield f'{named}: it draws from a density, which measured heights do not have; use "direct"'
             if scene.heights.resampled and scene.summits is None:
                 yield "heights: if resampled without radii, they have a smooth law; use mcgw.HeightTable"
@@ -125,12 +120,12 @@ class Sampling:
                         f"ensemble.{name} = {given!r}: measured heights as they are need {value!r}; "
                         f"or set {'heights' if scene.summits is None else 'summits'}.resample = true"
                     )
-        elif scene.summits is not None and not promise_of(self.sampler).one_by_one:
+        elif scene.summits is not None and not PROMISES[self.sampler].one_by_one:
             yield (
                 f"{named}: sums over summits with individual radii are far from Gaussian; use "
                 '"cells", or summits.curvature = "mean"'
             )
-        elif scene.summits is not None and not (scene.hertzian or promise_of(self.sampler).own_laws):
+        elif scene.summits is not None and not (scene.hertzian or PROMISES[self.sampler].own_laws):
             yield (
                 f"{named}: summits with individual radii have different breaks of contact.law = "
                 f'"{scene.law.name}"; use sampler = "tail", or summits.curvature = "mean"'

@@ -11,7 +11,8 @@ import tomli_w
 
 from analytic import MeasuredRadii
 from analytic.laws import Hertz
-from mcgw.formats.named_files import HDF5, loads, read_bytes
+from mcgw.formats.files import HDF5
+from mcgw.formats.named_files import loads, read_bytes
 from mcgw.machine.terminal import one_line
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.kinds import as_toml

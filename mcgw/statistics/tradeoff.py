@@ -18,7 +18,7 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 
 from analytic import MeasuredHeights, MeasuredRadii
-from mcgw.ensemble.simulation import in_words
+from mcgw.ensemble.forecast import in_words
 from mcgw.errors import RunError
 from mcgw.formats.table import Column, Drawn, Table
 from mcgw.machine.process import Progress, told

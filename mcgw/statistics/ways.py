@@ -11,10 +11,10 @@ from math import ceil, inf, nan, sqrt
 
 from scipy.special import ndtri
 
+from mcgw.ensemble.forecast import MOST_SURFACES, forecast, surfaces_at_load
 from mcgw.ensemble.intervals import CONFIDENCE
-from mcgw.ensemble.simulation import MOST_SURFACES, forecast, surfaces_at_load
 from mcgw.sampling.expected import expected
-from mcgw.scene.ensemble import promise_of
+from mcgw.scene.ensemble import PROMISES
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError
 
@@ -62,7 +62,7 @@ def sampled_ways(scene: Scene) -> list[str]:
     for name in dict.fromkeys((first, "cells", "tail", "direct", "aggregate", SOLVE)):
         with suppress(SceneError):
             sampler = drawn_by(scene, name).sampler
-            if scene.summits is None or promise_of(sampler).one_by_one:
+            if scene.summits is None or PROMISES[sampler].one_by_one:
                 found.append(name)
     return found
 
@@ -71,7 +71,7 @@ def wants_of(name: str) -> tuple[str, ...]:
     """Return what a way that draws can give: no law of surfaces by a sampler whose laws are off."""
     if name == SOLVE:
         return ("conductance",)
-    laws = ("quantile", "distribution", "values") if promise_of(name).one_by_one else ()
+    laws = ("quantile", "distribution", "values") if PROMISES[name].one_by_one else ()
     return ("mean", "std", *laws)
 
 

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import GROUP
 from mcgw.errors import StoreError
+from mcgw.formats.files import parts_of
 from mcgw.formats.named_files import open_regular
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from
 from mcgw.store.h5_reading import look, read_tables
 from mcgw.store.h5_writing import RUN_TYPE
-from mcgw.store.ownership import parts_of
 from mcgw.store.run_plan import RECORD, Plan, in_files
 
 if TYPE_CHECKING:

@@ -29,23 +29,18 @@ from typing import Any
 from filelock import ReadWriteLock, Timeout
 
 from mcgw.errors import StoreError
+from mcgw.formats.files import LOCK_FILES
 from mcgw.formats.named_files import loads, read_text
 from mcgw.scene.scene_file import scene_from
 from mcgw.scene.section import shortened
 
 PATIENCE = 1.0  # seconds: a process that was killed may need a moment to die
-_LOCK, _HOLDER = "lock.db", "holder"
-LOCK_FILES = (_HOLDER, _LOCK)
+_HOLDER, _LOCK = LOCK_FILES
 Question = tuple[str, str, str]  # text of a scene, axes of a sweep or none, versions that draw
 _PACKAGES = ("mcgw", "numpy", "scipy", "numba", "h5py")
 _DRAW = ("mcgw", "numpy", "numba", "scipy")
 _MOST_BYTES = 200
 _UNKNOWN = "another process (or by none, on a disk that keeps no locks)"
-
-
-def parts_of(path: Path) -> Path:
-    """Folder of the run that makes a file."""
-    return path.with_name(f"{path.name}.parts")
 
 
 class LockedError(StoreError):

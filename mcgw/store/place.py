@@ -9,7 +9,7 @@ from analytic import CustomLaw, PiecewiseSeries
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Labelled
 from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import check_output, refuse_read_only, remove_stale, state_of, whole_file
+from mcgw.formats.files import check_output, parts_of, refuse_read_only, remove_stale, state_of, whole_file
 from mcgw.machine.process import gibibytes
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.kinds import check_object
@@ -17,7 +17,7 @@ from mcgw.scene.scene import Scene, storable
 from mcgw.store.ensembles import described, open_ensemble, verify
 from mcgw.store.h5_reading import look
 from mcgw.store.h5_writing import write
-from mcgw.store.ownership import another, locked, parts_of
+from mcgw.store.ownership import another, locked
 from mcgw.store.run_plan import RECORD, Plan
 
 

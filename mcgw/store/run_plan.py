@@ -27,18 +27,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import tomli_w
 
+from mcgw.ensemble.drawing import GoOn, Values, reducer_of
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import GROUP, Labelled, Results, Rows, Tables, Variable
 from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import Expected, check_output, sync, whole_file
+from mcgw.formats.files import Expected, check_output, parts_of, sync, whole_file
+from mcgw.machine.threads import use_threads
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document, scene_from
 from mcgw.store.h5_reading import look, read_rows, read_tables
 from mcgw.store.h5_writing import BLOCK_TYPE, FILETYPE, FORMAT, MOST_TEXT, RUN_TYPE, write
-from mcgw.store.ownership import another, parts_of, provenance, refuse_link, versions
+from mcgw.store.ownership import another, provenance, refuse_link, versions
 
 if TYPE_CHECKING:
-    from mcgw.ensemble.drawing import GoOn, Values
     from mcgw.sweeps.points import Points
 
 RECORD = "run.h5"
@@ -157,12 +158,10 @@ class Plan:
             ) from None
 
     @cached_property
-    def reducers(self) -> "tuple[Values, ...]":
+    def reducers(self) -> tuple[Values, ...]:
         """What draws each group, and what of it is kept; a scene is one group."""
         if not isinstance(self.asked, Scene):
             return tuple(self.asked.groups)
-        from mcgw.ensemble.drawing import reducer_of  # imports the samplers
-
         return (reducer_of(self.asked),)
 
     @cached_property
@@ -175,10 +174,8 @@ class Plan:
         """Surfaces of all groups."""
         return sum(one.scene.n_surfaces for one in self.reducers)
 
-    def draw(self, span: Span, threads: int | None, *go_on: "GoOn") -> Tables:
+    def draw(self, span: Span, threads: int | None, *go_on: GoOn) -> Tables:
         """Return what is kept of some surfaces of one group; it does not depend on `threads`."""
-        from mcgw.machine.compiling import use_threads  # imports Numba
-
         group, first = self.blocks[span] if self.axes else (0, span.first)
         with use_threads(threads):
             return self.reducers[group].tables(first, first + span.n, *go_on)

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, lru_cache, reduce
 from operator import add
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -21,12 +22,13 @@ import tomli_w
 
 from analytic import Exponential, Homogeneous
 from analytic.arrays import Array, Ints
-from mcgw.ensemble.drawing import GoOn, Values, block_size, drawn_blocks, kept
+from mcgw.ensemble.drawing import GoOn, Values, block_size, drawn_blocks, kept, seconds_per_surface
+from mcgw.ensemble.forecast import in_words, without_rule
 from mcgw.ensemble.pooled import Pooled, pooled_from, tables_of
 from mcgw.ensemble.results import Tables, joined
-from mcgw.ensemble.simulation import without_rule
 from mcgw.formats.named_files import loads
 from mcgw.machine.process import check_memory, steps
+from mcgw.machine.terminal import listed, one_line
 from mcgw.sampling.shared import Shared, common_edges, shared, to_be_shared
 from mcgw.scene.cautions import cautions
 from mcgw.scene.reading import with_changes
@@ -244,6 +246,32 @@ def sweep_of(scene: str, axes: str, drawn: Tables) -> Sweep:
     rows = zip(drawn["points"].tolist(), drawn["points"][:, 1:], drawn["weights"], strict=True)
     places = [(g, some[some >= 0], w[some >= 0]) for (g, *_), some, w in rows]
     return Points.from_texts(scene, axes).answered(pooled_from(drawn), places)
+
+
+def sweep_plan_text(asked: Points) -> str:
+    """Return the plan in words; the group that takes the longest is tried out, of which nothing is kept."""
+    groups = asked.groups
+    scenes = sum(len(group.computed) for group in groups)
+    touching = sum(group.scene.n_surfaces * group.scene.touching for group in groups)
+    work = [group.scene.n_surfaces * group.work for group in groups]
+    longest = groups[work.index(max(work))]
+    started = perf_counter()
+    source = shared(longest.computed)
+    preparing = (perf_counter() - started) * scenes / len(longest.computed)
+    surfaces = longest.scene.n_surfaces * sum(work) / max(work)
+    drawing = seconds_per_surface(longest.scene, source) * surfaces
+    facts = [
+        *((key, asked.axes.summary(key)) for key in asked.axes.keys),
+        ("groups", f"{len(groups)} that share their surfaces"),
+        (
+            "surfaces",
+            f"{sum(x.scene.n_surfaces for x in groups)}, with {touching:.4g} asperities that touch",
+        ),
+        ("computed", f"{scenes} scenes; the others are weighted means of them"),
+        ("time", f"about {in_words(preparing + drawing)} on this machine"),
+    ]
+    title = one_line(str(asked.document["title"])) or "sweep"
+    return "\n".join([f"{title}: {asked.axes.size} scenes", *listed(facts)])
 
 
 def sweep_cautions(sweep: Sweep) -> list[str]:

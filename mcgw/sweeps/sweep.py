@@ -16,7 +16,7 @@ from mcgw.ensemble.paired import Difference, Paired, Slopes, difference_of, rati
 from mcgw.ensemble.pooled import PointResults, Pooled, tables_of
 from mcgw.ensemble.results import STATISTICS, Labelled, Variable, axis, statistics_of
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
-from mcgw.sampling.samplers import name_of
+from mcgw.sampling.expected import name_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.sweeps.axes import Axes, label

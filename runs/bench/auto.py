@@ -9,8 +9,7 @@ from scenes import S1, block
 from timing import timed
 
 import mcgw
-from mcgw.sampling.expected import expected
-from mcgw.sampling.samplers import name_of
+from mcgw.sampling.expected import expected, name_of
 
 SPECTRUM = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, 1e-6, 78.6e9)
 SCENES = {

@@ -11,7 +11,7 @@ from timing import Job, Times, against, job, parser_of, ratio, timed
 
 import mcgw
 from analytic import laws
-from mcgw.machine.compiling import use_threads
+from mcgw.machine.threads import use_threads
 from mcgw.sampling.samplers import cells_of
 from mcgw.scene.scene import Scene
 

@@ -7,7 +7,7 @@ asperities that give ten moments: medians over rounds, all sizes in turn.
 import numpy as np
 from timing import Job, job, parser_of, timed
 
-from mcgw.machine.compiling import use_threads
+from mcgw.machine.threads import use_threads
 from mcgw.sampling import spacing
 from mcgw.sampling.moments import Layout, OneByOne
 

@@ -8,11 +8,11 @@ from functools import cache
 from itertools import count
 
 import numpy as np
-from numba import get_num_threads
 from timing import Job, job, seconds
 
 import analytic
 from mcgw.ensemble.drawing import block_size, drawn_blocks
+from mcgw.machine.threads import THREADS
 from mcgw.sampling.block import Sums
 from mcgw.sampling.samplers import cells_of, sampler_of
 from mcgw.scene.scene import Scene
@@ -44,7 +44,7 @@ def block(
     def draw() -> float:
         sampler = prepared()
         size = block_size(scene, sampler)
-        surfaces = size * get_num_threads() if size > 1 else 1
+        surfaces = size * THREADS.get() if size > 1 else 1
         return seconds(lambda: [then(drawn) for drawn in drawn_blocks(sampler, 0, surfaces, size)], surfaces)
 
     return draw

@@ -56,7 +56,7 @@ ROWS = [
      {"over": {"grading.gamma": [1, 2], "ensemble.seed": [-1, 3], "surface.eta": [3, 2.5, 2, 1.5, 1],
                "contact.law": ["x:1:2", 0.5, "auto"]}, "zipped": False}),
     (SWEEP, "jobs.sweeping:sweep", "--zip", {"zipped": True}),
-    (f"{SWEEP} --zip --over ensemble.seed=1,2", "reports.plan:sweep_plan_text", "--plan",
+    (f"{SWEEP} --zip --over ensemble.seed=1,2", "sweeps.points:sweep_plan_text", "--plan",
      {"asked.axes.size": 2}),
     ("show --plan @s.toml", "reports.plan:plan_text",
      "--set contact.law=kogut-etsion --set contact.law.critical=0.05",

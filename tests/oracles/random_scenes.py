@@ -15,7 +15,7 @@ import scipy.stats
 import mcgw
 from analytic import RandomCurvature, laws, quantity_of
 from oracles.accurately import term
-from oracles.inside import promise_of
+from oracles.inside import PROMISES
 from oracles.scenes import scene_by
 
 SECONDS, SURFACES, FAR = 10.0, 3, 7.0
@@ -139,7 +139,7 @@ def judged(seed):
     try:
         ensemble = mcgw.simulate(scene)
         told |= {"accepted": True, "seconds": time.process_time() - start, "sampler": ensemble.sampler}
-        if promise_of(ensemble.sampler).one_by_one:
+        if PROMISES[ensemble.sampler].one_by_one:
             told["worst"], told["where"] = worst_share(listed := with_sums(ensemble))
             told["wrong"] = "off" if not told["worst"] <= 1 else other_means(ensemble, listed)
         else:

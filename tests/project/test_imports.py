@@ -43,6 +43,13 @@ def theory():
     import analytic
     tell("analytic")
 
+def plans():
+    mcgw.Scene(mcgw.Surface(1e-6, 1e-5, 3e8, 1e-4, 8e10), separations=[0.0, 1.0], seed=1)
+    tell("scene")
+    main("show", scene)
+    main("solve", scene, "--pressure", "1MPa")
+    tell("plan")
+
 def looks():
     main("show", file)
     tell("show")
@@ -56,8 +63,7 @@ import mcgw
 from mcgw.cli import parser_of
 parser_of()
 tell("parser")
-from mcgw.scene.scene import Scene
-tell("scene")
+branch(plans)
 branch(looks)
 main("run", scene, "-o", made)
 tell("run")
@@ -76,8 +82,6 @@ simulate(n_asperities=10**5, accuracy=1e-2)
 tell("accuracy")
 simulate(keep="statistics")
 tell("statistics")
-main("show", "--plan", scene)
-tell("plan")
 """
 
 
@@ -101,11 +105,17 @@ VALIDITY = [path for path in ROOT.glob("mcgw/validity/*.py") if path.stem != "__
 NOT_THERE = {
     "analytic": {"mcgw", "matplotlib", "h5py", "numba", "mpmath", "tqdm", "scipy.special"},
     "parser": {"numpy", "numba", "h5py", "matplotlib", "scipy"},
-    "scene": {"numba", "h5py", "matplotlib", *(f"mcgw.validity.{path.stem}" for path in VALIDITY)},
+    "scene": {
+        "numba",
+        "h5py",
+        "matplotlib",
+        "scipy.special",
+        *(f"mcgw.validity.{path.stem}" for path in VALIDITY),
+    },
     "show": {"matplotlib", "numba", "scipy.optimize", "scipy.stats"},
     "compare": {"matplotlib.pyplot", "numba", "scipy.optimize", "scipy.stats"},
     "run": {"matplotlib", "scipy.optimize", "scipy.stats"},
-    "plan": {"matplotlib", "scipy.optimize", "scipy.stats"},
+    "plan": {"matplotlib", "numba", "h5py", "filelock", "scipy.optimize", "scipy.stats"},
     "simulate": {"pandas", "xarray", "matplotlib"},
 }
 # What a scene that does not ask for it pays nothing for; and the step that asks, if one does.

@@ -5,10 +5,9 @@ import re
 import subprocess
 import sys
 
-import numba
 import numpy as np
 import pytest
-from oracles.inside import forecast, in_words, plan_text, rough_seconds, sampler_of
+from oracles.inside import THREADS, forecast, in_words, plan_text, rough_seconds, sampler_of
 
 import analytic
 import mcgw
@@ -97,10 +96,10 @@ def test_a_surface_takes_what_its_parts_do(make_scene, name):
     scene = make_scene(separations=(1.0, 2.0), **changes)
     known, touching = expected(scene), scene.n_asperities * float(scene.heights.sf(np.array(scene.lowest)))
     assert known.seconds == pytest.approx(by_hand(touching, known.moments), rel=2e-3)
-    shared = known.seconds / numba.get_num_threads()
+    shared = known.seconds / THREADS.get()
     assert rough_seconds(scene, 50) == pytest.approx(50 * shared, rel=1e-14)
     kept = scene.replace(keep="statistics", separations=np.linspace(1.0, 2.0, 9))
-    drawing = expected(kept).seconds / numba.get_num_threads()
+    drawing = expected(kept).seconds / THREADS.get()
     with_pairs = 50 * (drawing + 36 * 4e-8 + 36**2 / 2 * 2.5e-10)
     assert rough_seconds(kept, 50) == pytest.approx(with_pairs, rel=1e-14)
 

@@ -17,7 +17,8 @@ from typing import Any
 import numpy as np
 
 from analytic.arrays import Array, Ints
-from mcgw.machine.compiling import in_threads, njit, pieces
+from mcgw.machine.compiling import njit
+from mcgw.machine.threads import in_threads, pieces
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.moments import Layout
 from mcgw.sampling.response.rows import Rows, hertz_rows
