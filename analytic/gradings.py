@@ -18,6 +18,8 @@ from analytic.arrays import Array, hold
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
 
+_STEEPEST = 500.0  # whose exponential is a number, also times a large one
+
 
 class Grading(Protocol):
     """E*(s)/E* as a function of the reduced height s."""
@@ -88,6 +90,10 @@ class Exponential:
     def __call__(self, s: Array) -> Array:
         """``gamma - (gamma - 1) exp(-s)``, Eq. (4)."""
         return self.gamma - (self.gamma - 1) * np.exp(-s)
+
+    def ends(self, s: ArrayLike) -> tuple[Array, float]:
+        """Moduli at a height and far above it, between which those of all higher ones lie."""
+        return self(np.maximum(s, -_STEEPEST)), self.gamma
 
     @property
     def zero(self) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 import analytic
 from analytic import Custom, Grading, HeightLaw, Surface
 from analytic.arrays import Array
-from analytic.laws import CustomLaw, by_name
+from analytic.laws import CustomLaw, Hertz, by_name
 from mcgw.formats.named_files import columns_of, numbers_of
 from mcgw.scene.section import Section, signature_of
 
@@ -31,6 +31,11 @@ LAWS: dict[str, dict[str, Any]] = {  # by their words in the tables of a scene
         "scipy": analytic.ScipyHeights,
     },
     "contact.law": {**by_name, "custom": CustomLaw},
+}
+DEFAULTS: dict[str, Any] = {
+    "grading": analytic.Homogeneous(),
+    "heights": analytic.Gaussian(),
+    "contact.law": Hertz(),
 }
 _LAW_OF_HEIGHTS = ("support", "breaks", "span", "log_ratio", "log_pdf")
 _MOST_BYTES, _MOST_OF_MODULI = 2**28, 2**24
@@ -77,12 +82,15 @@ def heights_given(given: Any) -> HeightLaw | None:
     return given if own else None
 
 
-def law_of(section: Section, default: str, **beside: Any) -> Any:
+def law_of(section: Section, **beside: Any) -> Any:
     """Return a law that is given, or make the one whose word stands there, from those keys it takes.
 
     And from what there is `beside`, as the folder of its files; mistakes are noted and give None.
     """
+    if not section.table:
+        return DEFAULTS[section.name]
     key = "law" if "law" in section.rows else "name"
+    default = "exponential" if "gamma" in section.values else section.rows[key].default
     law = section.values.get(key, None if key in section.table else default)
     if law is None:
         return None  # unknown, so that its keys cannot be checked

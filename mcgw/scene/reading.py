@@ -12,7 +12,7 @@ import numpy as np
 
 import analytic
 from analytic import UNLOADING, HeightLaw, Interaction, MeasuredRadii, Nayak, RandomCurvature
-from analytic.laws import ContactLaw, Hertz
+from analytic.laws import ContactLaw
 from analytic.laws.law import check_poisson
 from mcgw.scene import laws
 from mcgw.scene.contact import Contact, Joint
@@ -109,8 +109,7 @@ def of_tables(document: Tables, folder: Path = Path(), seed: Seeds | None = None
             raise mistake(name, given, f"must be a table: write [{name}] above its keys{other}")
         of[name] = Section(name, given, table.rows, INSIDE[name], _WHOLE)
     surface, heights, radii = _surface_and_summits(of, folder)
-    graded = "exponential" if "gamma" in of["grading"].table else "homogeneous"
-    grading = laws.law_of(of["grading"], graded, folder=folder, surface=surface)
+    grading = laws.law_of(of["grading"], folder=folder, surface=surface)
     joint = of["joint"].make(Joint) or Joint()
     separations, contact = _contact(of, heights, joint)
     left_out: Values = dict.fromkeys(("n_surfaces", "n_asperities"), LeftOut())
@@ -121,7 +120,7 @@ def of_tables(document: Tables, folder: Path = Path(), seed: Seeds | None = None
         "title": of[""].get("title"),
         "surface": surface,
         "separations": separations,
-        "grading": grading or analytic.Homogeneous(),
+        "grading": grading,
         "negative": of["grading"].get("negative"),
         "heights": heights,
         "summits": radii,
@@ -148,7 +147,7 @@ def _surface_and_summits(of: Mapping[str, Section], folder: Path) -> tuple[Any, 
     if isinstance(own, MeasuredRadii | Spectral) and not of_heights.table:
         heights = own.heights
     else:
-        heights = laws.law_of(of_heights, "gaussian", folder=folder)
+        heights = laws.law_of(of_heights, folder=folder)
     uncertain = getattr(surface, "uncertainty", None)
     if uncertain and set(MOMENTS) & set(uncertain.names) and not isinstance(heights, Nayak | None):
         advice = 'm0, m2 and m4 need heights.law = "nayak"; otherwise give sigma, radius and eta'
@@ -208,7 +207,7 @@ def _contact(
     names |= {} if joint.film is None else {"conductance_si": None}
     if back is not None:
         names |= {q.name: None for name in names for q in UNLOADING.values() if q.unloading == name}
-    law = laws.law_of(of_law, Hertz.name) or Hertz()
+    law = laws.law_of(of_law) or laws.DEFAULTS["contact.law"]
     return separations, Contact(law, tuple(names), back, **(_softer(of_law, law) if of_law.values else {}))
 
 

@@ -14,19 +14,25 @@ import numpy as np
 from numpy.random import Generator, SeedSequence
 from numpy.typing import ArrayLike
 
-from analytic import Grading, Homogeneous, Interaction, MeasuredRadii, RandomCurvature, Surface
+from analytic import Exponential, Grading, Homogeneous, Interaction, MeasuredRadii, RandomCurvature, Surface
 from analytic.laws import ContactLaw
 from analytic.quadrature import extent
-from analytic.resolution import is_data, resolved
+from analytic.resolution import resolved
 from mcgw.formats.table import Shown, Table
 from mcgw.scene.contact import Contact, Joint, interaction_mistakes, law_mistakes
 from mcgw.scene.ensemble import PROMISES, Sampling
 from mcgw.scene.fields import Fields, LeftOut
-from mcgw.scene.laws import Graded
+from mcgw.scene.laws import LAWS, Graded
 from mcgw.scene.measured import MOMENTS, Fitted
 from mcgw.scene.reading import of_arguments
 from mcgw.scene.section import SceneError
-from mcgw.scene.surface import Spectral, perhaps_other_units, scale_mistakes, warn_of_units
+from mcgw.scene.surface import (
+    Spectral,
+    perhaps_other_units,
+    scale_mistakes,
+    surface_in_other_units,
+    warn_of_units,
+)
 from mcgw.scene.writing import sheet_of
 
 if TYPE_CHECKING:
@@ -34,6 +40,7 @@ if TYPE_CHECKING:
 
 _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where rel_err is to decide
 _LOOKED_AT, _BEYOND = 4001, 1.1  # heights for the stiffest; and how much farther series reach
+_VAST = 1e200  # a modulus, over E*, of which sums over a usual surface may overflow
 _FARTHEST = 1e12  # penetrations over the first one, which few formulas are meant for
 
 
@@ -211,14 +218,15 @@ class Scene(Fields, Shown):
 
 def _refuse_mistakes(scene: Scene) -> None:
     """Ask its parts, later ones only where the earlier ones find nothing."""
-    checks = [scale_mistakes]
+    usual = not surface_in_other_units(scene.surface)  # next to which no product leaves double precision
+    checks = [] if usual else [scale_mistakes]
     if not scene.hertzian:
         checks.append(law_mistakes)
     if scene.joint.gas is not None:
         checks.append(scene.joint.mistakes)
     if scene.interaction is not None:
         checks.append(interaction_mistakes)
-    if not isinstance(scene.grading, Homogeneous) or scene.law.name == "custom":
+    if scene.law.name == "custom" or not _harmless(scene.grading, scene.lowest, usual):
         from mcgw.scene.moduli import modulus_mistakes  # for those scenes alone
 
         checks.append(modulus_mistakes)
@@ -227,6 +235,13 @@ def _refuse_mistakes(scene: Scene) -> None:
         found = found or list(check(scene))
     if found:
         raise SceneError(found)
+
+
+def _harmless(grading: Grading, lowest: float, usual: bool) -> bool:
+    """Whether it is known in closed form to be neither negative nor vast from the lowest separation on."""
+    if usual and type(grading) is Exponential and grading.smooth:
+        return all(0 <= end < _VAST for end in grading.ends(lowest))
+    return isinstance(grading, Homogeneous)
 
 
 def with_sampling(scene: Scene, **changes: Any) -> Scene:
@@ -243,14 +258,15 @@ def storable(scene: Scene) -> Scene:
     the same bits. A Python function becomes an `analytic.PiecewiseSeries` over all heights that count; raises
     SceneError if it cannot be resolved, as one that is noisy.
     """
-    if scene.law.is_data and is_data(scene.grading):
+    is_data = type(scene.grading) in LAWS["grading"].values()  # a class made of one may do more
+    if scene.law.is_data and is_data:
         return scene
     # Asperities may have felt lower separations than those asked.
     low, high = extent(scene.grading, scene.heights, (*scene.separations, scene.lowest))
     parts = {each.name: getattr(scene, each.name) for each in dataclasses.fields(scene)}
     if not scene.law.is_data:
         parts["contact"] = dataclasses.replace(scene.contact, law=_resolved_law(scene, low, high))
-    if not is_data(scene.grading):
+    if not is_data:
         try:
             parts["grading"] = resolved(scene.grading, low, high)
         except ValueError as error:

@@ -45,7 +45,7 @@ def entered(call):
 
 @pytest.mark.parametrize(
     ("name", "functions", "files"),
-    [("Scene", 56, 16), ("simulate", 98, 23), ("run", 145, 31), ("compare", 105, 21)],
+    [("Scene", 40, 11), ("simulate", 96, 23), ("run", 143, 31), ("compare", 105, 21)],
 )
 def test_the_simplest_scene_takes_few_steps(name, functions, files, tmp_path):
     asked = scene()
