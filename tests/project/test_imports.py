@@ -68,7 +68,6 @@ branch(looks)
 main("run", scene, "-o", made)
 tell("run")
 surface = mcgw.Surface(1e-6, 1e-5, 3e8, 1e-4, 8e10)
-
 def simulate(**wish):
     return mcgw.simulate(mcgw.Scene(surface, separations=[0.0, 1.0], n_surfaces=2, seed=1), **wish)
 

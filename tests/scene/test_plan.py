@@ -1,6 +1,5 @@
 """``mcgw show --plan``: what would be drawn, and what not."""
 
-import os
 import re
 import subprocess
 import sys
@@ -105,7 +104,7 @@ def test_a_surface_takes_what_its_parts_do(make_scene, name):
 
 
 CHILD = """
-import mcgw
+import sys, mcgw
 from mcgw.reports.plan import plan_text
 surface = mcgw.Surface(1e-6, 1e-5, 3e8, 1e-4, 8e10)
 spectrum = mcgw.SpectralSurface(m0=1e-12, m2=1e-2, m4=4e8, nominal_area=1e-6, E_star=1e11)
@@ -114,16 +113,15 @@ for changes in ({}, {"accuracy": 0.01}, {"sampler": "direct"}, {"law": mcgw.Kogu
                 {"grading": lambda s: 1 + abs(s - 2.5)}, {"interaction": mcgw.Interaction("mean-plane")}):
     print(plan_text(mcgw.Scene(surface, **asked).replace(**changes)))
 print(plan_text(mcgw.Scene(spectrum, **asked)))
+assert not {"numba", "h5py"} & {*sys.modules}
 """
 
 
-def test_a_plan_compiles_nothing(tmp_path):
-    """Whatever the scene: a folder for compiled loops stays empty."""
-    env = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
-    done = subprocess.run([sys.executable, "-c", CHILD], capture_output=True, text=True, env=env, check=False)
+def test_a_plan_loads_no_compiled_loop():
+    """Whatever the scene."""
+    done = subprocess.run([sys.executable, "-c", CHILD], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert done.stdout.count("not done:") == 7
-    assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
 
 
 def test_times_are_told_as_people_say_them():
