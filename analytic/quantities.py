@@ -81,44 +81,40 @@ def _by_name(*quantities: Quantity) -> dict[str, Quantity]:
     return {q.name: q for q in quantities}
 
 
+# Powers of the approach, of the modulus and of the radius, and the number in the scale.
+_LOAD, _SLOPE, _SPOT = (1.5, 1, 0.5, 4 / 3), (0.5, 1, 0.5, 2), (0.5, 0, 0.5, 4)
+_AREA, _ONE, _RESISTANCE = (1.0, 0, 1.0, math.pi), (0.0, 0, 0.0, 1), (-0.5, 0, -0.5, 0.25)
+
 QUANTITIES = _by_name(
-    Quantity("load", "normal load", "N", 1.5, 1, 0.5, 4 / 3, symbol="P"),
-    Quantity("area", "real contact area", "m^2", 1.0, 0, 1.0, math.pi, words="real area", symbol="A"),
-    Quantity("stiffness", "normal stiffness", "N/m", 0.5, 1, 0.5, 2, symbol="K"),
-    Quantity("contacts", "number of contacts", "1", 0.0, 0, 0.0, 1, counts=True),
-    Quantity(
-        "conductance", "contact conductance, times the resistivity rho", "m", 0.5, 0, 0.5, 4, symbol="Cρ",
-    ),
-)  # fmt: skip
+    Quantity("load", "normal load", "N", *_LOAD, symbol="P"),
+    Quantity("area", "real contact area", "m^2", *_AREA, words="real area", symbol="A"),
+    Quantity("stiffness", "normal stiffness", "N/m", *_SLOPE, symbol="K"),
+    Quantity("contacts", "number of contacts", "1", *_ONE, counts=True),
+    Quantity("conductance", "contact conductance, times the resistivity rho", "m", *_SPOT, symbol="Cρ"),
+)
 
 PER_AREA = _by_name(
-    Quantity("pressure", "normal load per nominal area", "Pa", 1.5, 1, 0.5, 4 / 3, of="load"),
-    Quantity("area_fraction", "real contact area per nominal area", "1", 1.0, 0, 1.0, math.pi, of="area"),
+    Quantity("pressure", "normal load per nominal area", "Pa", *_LOAD, of="load"),
+    Quantity("area_fraction", "real contact area per nominal area", "1", *_AREA, of="area"),
     Quantity(
-        "contact_conductance", "contact conductance per nominal area", "S/m^2 or W/(m^2 K)",
-        0.5, 0, 0.5, 4, of="conductance_si",
+        "contact_conductance", "contact conductance per nominal area", "S/m^2 or W/(m^2 K)", *_SPOT,
+        of="conductance_si",
     ),
 )  # fmt: skip
 
 # What only other laws of contact than Hertz's tell apart.
 LAW_QUANTITIES = _by_name(
     Quantity(
-        "load_slope", "slope -dP/dd of the loads of the spots", "N/m",
-        0.5, 1, 0.5, 2, words="slope of the loads",
+        "load_slope", "slope -dP/dd of the loads of the spots", "N/m", *_SLOPE, words="slope of the loads"
+    ),
+    Quantity("conductance_si", "contact conductance", "S or W/K", *_SPOT, words="conductance", symbol="C"),
+    Quantity(
+        "yielded", "number of contacts that have yielded", "1", *_ONE, counts=True, words="yielded contacts"
     ),
     Quantity(
-        "conductance_si", "contact conductance", "S or W/K",
-        0.5, 0, 0.5, 4, words="conductance", symbol="C",
+        "spot_conductance", "contact conductance of the spots alone, times the resistivity rho", "m", *_SPOT
     ),
-    Quantity(
-        "yielded", "number of contacts that have yielded", "1",
-        0.0, 0, 0.0, 1, counts=True, words="yielded contacts",
-    ),
-    Quantity(
-        "spot_conductance", "contact conductance of the spots alone, times the resistivity rho", "m",
-        0.5, 0, 0.5, 4,
-    ),
-)  # fmt: skip
+)
 
 
 def _unloading(q: Quantity) -> Quantity:
@@ -132,14 +128,14 @@ UNLOADING = _by_name(
 )
 
 # The separation of the bodies, where asperities press each other down.
-_NOMINAL = Quantity("nominal_separation", "nominal separation d/sigma", "1", 1.5, 1, 0.5, 1)
+_NOMINAL = Quantity("nominal_separation", "nominal separation d/sigma", "1", *_LOAD)
 SEPARATIONS = _by_name(_NOMINAL, _unloading(_NOMINAL))
 
 # Of a joint with gas in its gap, per nominal area: what the gas conducts, and spots and gas together.
 _GAP, _ALL = (
     Quantity(
-        f"{name}_conductance", f"conductance of the {what}, per nominal area", "W/(m^2 K)",
-        0.5, 0, 0.5, 4, of="conductance_si", words=f"{name} conductance", symbol=f"h_{name[0]}",
+        f"{name}_conductance", f"conductance of the {what}, per nominal area", "W/(m^2 K)", *_SPOT,
+        of="conductance_si", words=f"{name} conductance", symbol=f"h_{name[0]}",
     )
     for name, what in (("gap", "gas in the gap"), ("joint", "joint (spots beside gas)"))
 )  # fmt: skip
@@ -147,13 +143,12 @@ JOINT = _by_name(_GAP, _unloading(_GAP), _ALL, _unloading(_ALL))
 
 # What follows of conductances at a given load.
 RESISTANCES = _by_name(
-    Quantity("thermal_resistance", "thermal resistance of the joint", "K/W", -0.5, 0, -0.5, 0.25),
-    Quantity("contact_resistance", "contact resistance", "ohm", -0.5, 0, -0.5, 0.25),
+    Quantity("thermal_resistance", "thermal resistance of the joint", "K/W", *_RESISTANCE),
+    Quantity("contact_resistance", "contact resistance", "ohm", *_RESISTANCE),
     Quantity(
-        "specific_contact_resistance", "contact resistance of a unit area", "ohm m^2 or K m^2/W",
-        -0.5, 0, -0.5, 0.25,
+        "specific_contact_resistance", "contact resistance of a unit area", "ohm m^2 or K m^2/W", *_RESISTANCE
     ),
-)  # fmt: skip
+)
 
 # All that an ensemble can hold.
 ALL_QUANTITIES = {**QUANTITIES, **LAW_QUANTITIES, **UNLOADING, **SEPARATIONS, **JOINT}
