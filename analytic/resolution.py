@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from numpy.typing import ArrayLike
 
 from analytic.arrays import Array, Ints
 from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous, Table
@@ -28,15 +29,12 @@ _ABOUT = 2.0**-8  # a kink is what no polynomial describes up to here on either 
 _STEP, _POINTS = 0.5, np.linspace(0, 1, 33)  # heights at which a bound is looked at, between its breaks
 _NEARBY = 2.0**-14  # heights on either side that tell whether a bound comes nearer
 _ROUGHLY = 2.0**24  # spacings of heights to which its turn is found: it hardly moves there
+Curve = Callable[[Array], Array]
 _DATA = Homogeneous, Exponential, Table, PiecewiseSeries
 
 
-def _misfit(terms: int, grading: Grading, low: Array, high: Array, heights: Array) -> tuple[Array, Array]:
-    """How far a polynomial on each interval is from the grading at heights there, and how far it may be.
-
-    On an interval of a short one, unless it is narrow, values must have one size: then it is as accurate next
-    to each height as it is on the whole.
-    """
+def _misfit(terms: int, grading: Curve, low: Array, high: Array, heights: Array) -> tuple[Array, Array]:
+    """How far a polynomial on each interval is from the grading at heights there, and how far it may be."""
     width = (high - low)[:, None]
     at_nodes, at_heights = grading(chebyshev_points(low, high, terms)), grading(heights)
     basis = chebyshev.chebvander(2 * (heights - low[:, None]) / width - 1, terms - 1)
@@ -47,7 +45,7 @@ def _misfit(terms: int, grading: Grading, low: Array, high: Array, heights: Arra
     noise = 4 * last_digit * np.ptp(values, axis=1) / width[:, 0]
     size = np.abs(values)
     misfit = np.abs(fit - at_heights).max(axis=1)
-    if terms == _SHORT:
+    if terms == _SHORT:  # which is to be as accurate next to each height, where values have one size
         narrow = width[:, 0] <= _NARROW
         uneven = size.max(axis=1) > _EVEN * size.min(axis=1)
         misfit = np.where(uneven & ~narrow, np.inf, misfit)
@@ -69,7 +67,7 @@ def _spread_over(low: Array, high: Array) -> Array:
     return np.asarray(low[:, None] + (high - low)[:, None] * _CHECKS)
 
 
-def _rounding(terms: int, grading: Grading, low: Array, high: Array) -> Array:
+def _rounding(terms: int, grading: Curve, low: Array, high: Array) -> Array:
     """Return the rounding noise of the grading: the misfit left on intervals 1000 times narrower."""
     width = np.maximum(_TINY * (high - low), 4 * np.spacing(np.maximum(np.abs(low), np.abs(high))))
     starts = [low + part * (high - low) for part in (0.19, 0.47, 0.83)]
@@ -77,12 +75,8 @@ def _rounding(terms: int, grading: Grading, low: Array, high: Array) -> Array:
     return np.asarray(np.median(left, axis=0))  # one of the three may lie on a jump
 
 
-def _bisected(terms: int, grading: Grading, edges: Array, noise_of_one: float = _NOISE) -> Array:
-    """With further edges, until polynomials describe the grading on all intervals.
-
-    What it seems to be off by on ever narrower intervals is its rounding noise, up to `noise_of_one` of its
-    greatest value. If that takes more than 4096 pieces, it is a ValueError.
-    """
+def _bisected(terms: int, grading: Curve, edges: Array, noise_of_one: float = _NOISE) -> Array:
+    """With further edges, until polynomials describe the grading on all intervals but for rounding noise."""
     left, right, noise = edges[:-1], edges[1:], np.zeros(edges.size - 1)
     most_noise = noise_of_one * np.abs(grading(_spread_over(left, right))).max()
     while left.size:
@@ -105,7 +99,7 @@ def _bisected(terms: int, grading: Grading, edges: Array, noise_of_one: float = 
     return edges
 
 
-def _merged(terms: int, grading: Grading, edges: Array, kept: Array) -> Array:
+def _merged(terms: int, grading: Curve, edges: Array, kept: ArrayLike) -> Array:
     """Without the edges that no polynomial needs: neighbours are joined while one describes both."""
     size = 0
     while size != edges.size:
@@ -119,9 +113,7 @@ def _merged(terms: int, grading: Grading, edges: Array, kept: Array) -> Array:
     return edges
 
 
-def resolved_breaks(
-    grading: Grading, low: float, high: float, noise_of_one: float = _NOISE
-) -> tuple[float, ...]:
+def resolved_breaks(grading: Grading, low: float, high: float) -> tuple[float, ...]:
     """Return the heights that cut ``[low, high]`` into pieces on which the grading is a smooth curve.
 
     A smooth grading is cut at its own breaks; another one is bisected until a polynomial of degree
@@ -135,8 +127,6 @@ def resolved_breaks(
         E*(s)/E*.
     low, high : float
         Range of reduced heights that matters.
-    noise_of_one : float, optional
-        Rounding noise that is no feature, over the greatest value.
 
     Returns
     -------
@@ -148,19 +138,20 @@ def resolved_breaks(
     ValueError
         If more than 4096 pieces are not enough.
     """
+    declared = tuple(float(b) for b in grading.breaks if low < b < high)
     if grading.smooth or not low < high:
-        return tuple(np.unique([float(b) for b in grading.breaks if low < b < high]).tolist())
-    return _found_breaks(grading.__call__, low, high, noise_of_one)
+        return tuple(np.unique(declared).tolist())
+    return cuts_of(grading.__call__, declared, low, high)  # a method is equal to that of no equal grading
 
 
 @lru_cache(maxsize=_REMEMBERED)
-def _found_breaks(call: Any, low: float, high: float, noise_of_one: float) -> tuple[float, ...]:
-    """By the method of a grading, which is equal to that of no other: an equal function may have changed."""
-    grading: Grading = call.__self__
-    declared = np.unique([float(b) for b in grading.breaks if low < b < high])
+def cuts_of(
+    curve: Curve, declared: tuple[float, ...], low: float, high: float, noise_of_one: float = _NOISE
+) -> tuple[float, ...]:
+    """As `resolved_breaks`, of any function; noise up to so much of its greatest value is no feature."""
     edges = np.unique([low, *declared, *marks(low, high, _WIDEST), high])
-    edges = _bisected(_LONG, grading, edges, noise_of_one)
-    return tuple(_merged(_LONG, grading, edges, declared)[1:-1].tolist())
+    edges = _bisected(_LONG, curve, edges, noise_of_one)
+    return tuple(_merged(_LONG, curve, edges, declared)[1:-1].tolist())
 
 
 def stretches(

@@ -3,7 +3,7 @@
 import math
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from time import thread_time
 from timeit import repeat
@@ -13,7 +13,7 @@ import numpy as np
 
 from analytic.arrays import Array, hold
 from analytic.heights import HeightLaw
-from analytic.resolution import resolved_breaks
+from analytic.resolution import cuts_of
 
 _SLOW = 5e-3  # seconds for one of thousands of densities: some are integrals of integrals
 _NOISE = 2.0**-30  # of a density that is the exponential of large terms, as of gamma(1e4)
@@ -23,7 +23,7 @@ _NO_RARER = 1e-300  # share beyond which a law has no heights, if its density en
 _INSIDE, _OUTSIDE = 1e-2, 1e-6  # it is positive so far inside, in standard deviations, and 0 so far outside
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class ScipyHeights(HeightLaw):
     """Any frozen continuous distribution of scipy.stats, reduced by its own mean and variance.
 
@@ -46,13 +46,26 @@ class ScipyHeights(HeightLaw):
     [-1.732051, 1.732051]
     """
 
-    distribution: Any
+    distribution: Any = field(compare=False)
+    _key: tuple[Any, ...] = field(default=(), init=False, repr=False)  # kind, name and shapes
 
     def __post_init__(self) -> None:
+        from scipy import stats  # loaded with the distribution
+
         if not hasattr(self.distribution, "pdf"):
             raise ValueError(f"{self.distribution!r}: give a frozen continuous distribution of scipy.stats")
         hold(self, distribution=_without_place(self.distribution))
-        self._check_speed()
+        kind = getattr(self.distribution, "dist", self.distribution)
+        if type(kind) is type(getattr(stats, self._name, None)):
+            kind = type(kind)
+        hold(self, _key=(kind, self._name, *sorted(self.shapes.items())))
+        low, high = np.clip(self.distribution.support(), -3.0, 3.0)
+        density = partial(self.distribution.pdf, (low + high) / 2)
+        seconds = min(repeat(density, number=1, repeat=3, timer=thread_time))  # the first may load something
+        if seconds > _SLOW:
+            raise ValueError(
+                f"{self._name}: one density takes SciPy {1e3 * seconds:.0f} ms; give another law, or a table"
+            )
         mean, std = self._mean_std
         if not (math.isfinite(mean) and math.isfinite(std) and std > 0):
             raise ValueError(
@@ -63,34 +76,10 @@ class ScipyHeights(HeightLaw):
     def _name(self) -> str:
         return str(getattr(getattr(self.distribution, "dist", None), "name", self.distribution))
 
-    def _check_speed(self) -> None:
-        low, high = np.clip(self.distribution.support(), -3.0, 3.0)
-        density = partial(self.distribution.pdf, (low + high) / 2)
-        seconds = min(repeat(density, number=1, repeat=3, timer=thread_time))  # the first may load something
-        if seconds > _SLOW:
-            raise ValueError(
-                f"{self._name}: one density takes SciPy {1e3 * seconds:.0f} ms; give another law, or a table"
-            )
-
     @property
     def shapes(self) -> dict[str, float]:
         """Its shape parameters by their names."""
         return {key: float(value) for key, value in getattr(self.distribution, "kwds", {}).items()}
-
-    @property
-    def _key(self) -> tuple[Any, ...]:
-        from scipy import stats  # loaded with the distribution
-
-        law = self.distribution
-        kind = getattr(law, "dist", law)
-        named = type(kind) is type(getattr(stats, self._name, None))
-        return type(kind) if named else kind, self._name, tuple(sorted(self.shapes.items()))
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, ScipyHeights) and self._key == other._key
-
-    def __hash__(self) -> int:
-        return hash(self._key)
 
     @cached_property
     def _mean_std(self) -> tuple[float, float]:
@@ -120,7 +109,7 @@ class ScipyHeights(HeightLaw):
         """Heights that cut the density, between rare heights, into smooth curves."""
         ends = float(self.ppf(np.array(_RARE))), float(self.isf(np.array(_RARE)))
         low, high = (end if abs(s - end) < _NEXT else s for s, end in zip(ends, self.support, strict=True))
-        return resolved_breaks(_Density(self), low, high, _NOISE)
+        return cuts_of(self.pdf, (), low, high, _NOISE)  # of a density, which may be infinite
 
     @property
     def singular(self) -> tuple[float, ...]:
@@ -154,10 +143,7 @@ class ScipyHeights(HeightLaw):
         return np.asarray(self.distribution.sf(self._x(s)))
 
     def between(self, below: Array, above: Array) -> Array:
-        """Return its ``ppf`` or ``isf`` of the smaller share, where its tail there has that; else as any law.
-
-        SciPy loses heights in many tails: beta heights at 1e-280, inverse Gaussian ones at 1e-17.
-        """
+        """Return its ``ppf`` or ``isf`` of the smaller share; as any law where SciPy loses it in the tail."""
         found, law, (mean, std) = np.empty(below.shape), self.distribution, self._mean_std
         lost = np.ones(below.shape, dtype=bool)
         low = below < above
@@ -182,15 +168,3 @@ def _without_place(distribution: Any) -> Any:
     if not set(names) <= set(given):
         return frozen  # shapes of a kind that has no names
     return frozen.dist(**{name: float(given[name]) for name in names})
-
-
-@dataclass(frozen=True)
-class _Density:
-    """A density as a grading, so that its jumps and kinks are found alike; it may be infinite."""
-
-    law: ScipyHeights
-    breaks: tuple[float, ...] = ()
-    smooth: bool = False
-
-    def __call__(self, s: Array) -> Array:
-        return self.law.pdf(s)
