@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,10 +16,7 @@ _FLAT = 1e-9  # reduced heights closer than this are one
 
 
 def reduced(heights: ArrayLike) -> Array:
-    """Return heights in any unit reduced to mean 0 and standard deviation 1 (divisor K), as they are if such.
-
-    Fewer than two, or not finite or all alike, are a ValueError.
-    """
+    """Return heights in any unit reduced to mean 0 and standard deviation 1 (divisor K), if they are not."""
     z = np.asarray(heights, dtype=np.float64).ravel()
     if z.size < 2 or not np.all(np.isfinite(z)):
         raise ValueError("heights: give two or more finite numbers")
@@ -57,6 +54,8 @@ class HeightTable(HeightLaw):
 
     s: tuple[float, ...]
     share: tuple[float, ...]
+    _s: Any = field(default=None, init=False, repr=False, compare=False)
+    _share: Any = field(default=None, init=False, repr=False, compare=False)
 
     def __init__(self, s: Sequence[float], share: Sequence[float]) -> None:
         x, p = np.array(s, dtype=np.float64), np.array(share, dtype=np.float64)
@@ -69,15 +68,14 @@ class HeightTable(HeightLaw):
         std = math.sqrt((mass * ((middle - mean) ** 2 + np.diff(x) ** 2 / 12)).sum())
         if abs(mean) > 1e-12 or abs(std - 1) > 1e-12:  # so that a table read again stays as it is
             x = (x - mean) / std
-        hold(self, s=tuple(x.tolist()), share=tuple(p.tolist()))
+        hold(self, s=tuple(x.tolist()), share=tuple(p.tolist()), _s=x, _share=p)
 
     @classmethod
     def of(cls, heights: ArrayLike) -> "HeightTable":
         """Return the law of a sample, smooth between its order statistics.
 
-        Of K heights the ranks counted from either end are kept one by one up to 10, then in steps of a
-        tenth: about 200 points, dense where the contacts are. Heights between two of them count as
-        evenly spread.
+        Of K heights the ranks counted from either end are kept one by one up to 10, then in steps of a tenth:
+        about 200 points, dense where the contacts are. Heights between two of them count as evenly spread.
 
         Parameters
         ----------
@@ -100,12 +98,10 @@ class HeightTable(HeightLaw):
             near.append(max(near[-1] + 1, math.ceil(_GROWTH * near[-1])))
         kept = np.array(near[:-1], dtype=np.int64)
         ranks = np.unique(np.concatenate([kept, z.size - 1 - kept]))
-        rising = np.concatenate([[True], np.diff(z[ranks]) > _FLAT])
-        rising[-1] = True
-        x, p = z[ranks][rising], ranks[rising] / (z.size - 1)
-        if x.size > 2 and x[-1] - x[-2] <= _FLAT:
-            x, p = np.delete(x, -2), np.delete(p, -2)
-        return cls(x.tolist(), p.tolist())
+        x = z[ranks]
+        apart = (np.diff(x, prepend=-np.inf) > _FLAT) & (x[-1] - x > _FLAT)
+        apart[-1] = True
+        return cls(x[apart].tolist(), (ranks[apart] / (z.size - 1)).tolist())
 
     @property
     def support(self) -> tuple[float, float]:
@@ -150,14 +146,6 @@ class HeightTable(HeightLaw):
         """Return the inverse, counted from the top."""
         return np.asarray(np.interp(p * self.sf(np.array(above)), 1 - self._share[::-1], self._s[::-1]))
 
-    @cached_property
-    def _s(self) -> Array:
-        return np.array(self.s)
-
-    @cached_property
-    def _share(self) -> Array:
-        return np.array(self.share)
-
 
 @dataclass(frozen=True)
 class MeasuredHeights(HeightLaw):
@@ -184,13 +172,11 @@ class MeasuredHeights(HeightLaw):
 
     heights: tuple[float, ...]
     resampled: bool = False
+    _sorted: Any = field(default=None, init=False, repr=False, compare=False)
 
     def __init__(self, heights: Sequence[float] | Array, *, resampled: bool = False) -> None:
-        hold(self, heights=tuple(reduced(heights).tolist()), resampled=resampled)
-
-    @cached_property
-    def _sorted(self) -> Array:
-        return np.sort(np.array(self.heights))
+        s = reduced(heights)
+        hold(self, heights=tuple(s.tolist()), resampled=resampled, _sorted=np.sort(s))
 
     @property
     def support(self) -> tuple[float, float]:

@@ -22,9 +22,8 @@ _NOISE = 3e-16
 class PiecewiseSeries:
     """Chebyshev series on neighbouring intervals: what `analytic.resolved` makes of any grading.
 
-    Outside its outermost edges it keeps the value that it has there; at an edge it is that of the
-    interval above. It is evaluated by sums, products and quotients alone: every processor gives the
-    same bits.
+    Outside its outermost edges it keeps the value that it has there; at an edge it is that of the interval
+    above. It is evaluated by sums, products and quotients alone: every processor gives the same bits.
 
     Parameters
     ----------
@@ -54,24 +53,17 @@ class PiecewiseSeries:
     array([1. , 1. , 1.5, 3. , 3. ])
     """
 
-    edges: tuple[float, ...]
-    coefficients: tuple[tuple[float, ...], ...]
-    name: str
-    kinks: tuple[float, ...]
-    checked: bool
+    edges: Sequence[float]
+    coefficients: Sequence[Sequence[float]]
+    name: str = ""
+    kinks: Sequence[float] = ()
+    checked: bool = True
     smooth: ClassVar[bool] = True
 
-    def __init__(
-        self,
-        edges: Sequence[float],
-        coefficients: Sequence[Sequence[float]],
-        name: str = "",
-        kinks: Sequence[float] = (),
-        checked: bool = True,
-    ) -> None:
-        rows = (tuple(map(float, c)) for c in coefficients)
-        hold(self, edges=tuple(map(float, edges)), coefficients=tuple(rows))
-        hold(self, name=str(name)[:_MOST_NAME], kinks=tuple(map(float, kinks)), checked=checked)
+    def __post_init__(self) -> None:
+        rows = tuple(tuple(map(float, c)) for c in self.coefficients)
+        hold(self, edges=tuple(map(float, self.edges)), coefficients=rows)
+        hold(self, name=str(self.name)[:_MOST_NAME], kinks=tuple(map(float, self.kinks)))
         pieces = len(self.edges) - 1
         if not 1 <= pieces <= MOST_PIECES or not _rising(self.edges):
             raise ValueError(f"edges: give 2 to {MOST_PIECES + 1} finite heights that increase")
@@ -94,7 +86,7 @@ class PiecewiseSeries:
     @property
     def breaks(self) -> tuple[float, ...]:
         """The inner edges."""
-        return self.edges[1:-1]
+        return tuple(self.edges[1:-1])
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
@@ -115,11 +107,10 @@ class PiecewiseSeries:
 
     def agrees(self, other: "PiecewiseSeries") -> bool:
         """Return whether both stand for one function, resolved perhaps where its last digits are others."""
-        if not np.allclose(
-            [self.edges[0], self.edges[-1]], [other.edges[0], other.edges[-1]], atol=_SAME_END
-        ):
+        lows, highs = ([self.edges[k], other.edges[k]] for k in (0, -1))
+        if not np.allclose([lows[0], highs[0]], [lows[1], highs[1]], atol=_SAME_END):
             return False
-        low, high = max(self.edges[0], other.edges[0]), min(self.edges[-1], other.edges[-1])
+        low, high = max(lows), min(highs)
         edges = np.unique(np.clip([*self.edges, *other.edges], low, high))
         s = edges[:-1, None] + np.diff(edges)[:, None] * _INSIDE
         mine = self(s)
@@ -144,7 +135,7 @@ class PiecewiseSeries:
         return tuple(behind.tolist())  # the first heights on the far side
 
 
-def _rising(values: tuple[float, ...]) -> bool:
+def _rising(values: Sequence[float]) -> bool:
     return bool(np.all(np.isfinite(values)) and np.all(np.diff(values) > 0))
 
 
