@@ -51,21 +51,12 @@ from analytic.heights import ExponentialHeights, Gaussian, HeightLaw, Weibull
 from analytic.integrals import fn, fn_paper, ratio_at_equal_load
 from analytic.interaction import Interaction
 from analytic.joint import Joint
-from analytic.laws import (
-    ChangEtsionBogy,
-    Coated,
-    ContactLaw,
-    CustomLaw,
-    DerjaguinMullerToporov,
-    Film,
-    Hertz,
-    JacksonGreen,
-    JohnsonKendallRoberts,
-    KogutEtsion,
-    Layer,
-    PowerLawGraded,
-    ZhaoMaiettaChang,
-)
+from analytic.laws.adhesion import DerjaguinMullerToporov, JohnsonKendallRoberts
+from analytic.laws.custom import CustomLaw
+from analytic.laws.elastic import Coated, PowerLawGraded
+from analytic.laws.elastic_plastic_laws import ChangEtsionBogy, JacksonGreen, KogutEtsion, ZhaoMaiettaChang
+from analytic.laws.film import Film, Layer
+from analytic.laws.law import ContactLaw, Hertz
 from analytic.measured_summits import HeightTable, MeasuredHeights, MeasuredRadii
 from analytic.model import Cumulants, Model
 from analytic.nayak import Nayak

@@ -151,11 +151,8 @@ class JohnsonKendallRoberts(_Adhesive):
 
 
 def _root(q: Any) -> Any:
-    """Root z of ``z^4 - 4 z = q^2 - 3`` by Ferrari: the larger one, or for q < 0 the smaller one.
-
-    q is 0 where contacts break off; ``m^3 + (q^2 - 3) m = 2`` by Cardano, no terms of which cancel.
-    """
-    p = q * q / 3
+    """Root z of ``z^4 - 4 z = q^2 - 3`` by Ferrari: the larger one, or for q < 0 the smaller one."""
+    p = q * q / 3  # ``m^3 + (q^2 - 3) m = 2`` by Cardano, no terms of which cancel
     t = (1 + np.sqrt(3 * p * (1 - p + p * p / 3))) ** (1 / 3)
     m = 2 / (t * t + (p - 1) + ((p - 1) / t) ** 2)
     return np.sqrt(m / 2) + q / (2 * (m + 1)) * np.sqrt((m * m + 2 * m + 4) / (np.sqrt(2 / m) + m / 2))

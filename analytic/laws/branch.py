@@ -11,7 +11,7 @@ several intervals if it falls faster than heights rise, as that of yielding does
 from collections.abc import Callable, Iterable, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,13 +25,8 @@ from analytic.resolution import stretches
 from analytic.roots import sign_changes
 
 
-@dataclass(frozen=True)
-class Regimes:
-    """Intervals of heights on each of which one piece of the law holds, at several separations.
-
-    Those of one separation follow each other, upwards, from the lowest height in contact on; neighbours
-    have different pieces. All arrays have the shape (intervals,).
-    """
+class Regimes(NamedTuple):
+    """Intervals of heights on each of which one piece of the law holds, of each separation upwards."""
 
     separation: Ints  # which of the separations, not decreasing
     low: Array  # reduced heights ``low <= s < high``
@@ -41,26 +36,19 @@ class Regimes:
 
 @dataclass(frozen=True)
 class Branch:
-    """History of a surface: its law of contact, where unloading began, what spots conduct through.
-
-    Without `unload_from` it is the loading branch; `of` gives the branch that a quantity is on.
-    """
+    """History of a surface: its law of contact, where unloading began, what spots conduct through."""
 
     law: ContactLaw  # in reduced units
-    unload_from: float | None = None  # lowest separation that an unloaded surface has reached, d/sigma
+    unload_from: float | None = None  # lowest separation that it has reached, d/sigma; None on loading
     film: Film | None = None  # of "conductance_si", on the surface
     ratios: Array | None = None  # of the radii of summits to that of the surface, along the last axis of all
 
     def of(self, quantity: str) -> Self:
-        """Return the branch that a quantity is on.
-
-        Where nothing yields, unloading follows the loading curve, from any separation. A quantity that there
-        is not is a KeyError; unloading or conductance that is not known, a ValueError.
-        """
+        """Return the branch that a quantity is on; one that is not known here is refused."""
         q = quantity_of(quantity)
         if q.base == "conductance_si" and self.film is None:
             raise ValueError(f"quantity = {quantity!r}: give a film, or at least a resistivity")
-        if not q.unloading or self.law.elastic:
+        if not q.unloading or self.law.elastic:  # unloading follows the loading curve, from anywhere
             return self.loading
         self.law.unloading(0.0)  # a law that has none says so
         if self.unload_from is None:
@@ -106,9 +94,8 @@ class Branch:
     ) -> Array:
         """Return what summits of this branch add at separations, each by its own formula, 0 without contact.
 
-        At reduced separations and heights and moduli E*(s)/E*, whose shapes broadcast; over scales for the
-        radius of the surface, shape (quantities, *common shape). With `slope` the derivatives by the
-        penetration instead, within a piece.
+        Separations, heights and moduli E*(s)/E* broadcast; over scales for the radius of the surface, shape
+        (quantities, *common shape). With `slope` the derivatives by the penetration instead, within a piece.
         """
         h, s, e = (np.asarray(x, dtype=np.float64) for x in (h, s, e))
         pieces = self.pieces(h, s - h, e)
@@ -129,12 +116,9 @@ class Branch:
         self, quantity: str, piece: int, h: Array, above: Array, e: Array, *, sign: float = 1.0,
         slope: bool = False,
     ) -> Array:  # fmt: skip
-        """Return what contacts of a piece add at heights `above` the separations, over scales of own radii.
-
-        With a `sign` of -1 the formula goes on to negative roots of the penetration.
-        """
+        """Return what contacts of a piece add at heights above the separations, over scales of own radii."""
         law = self._law(self.deepest(h, above))
-        y = sign * np.sqrt(np.maximum(above - law.residual(e), 0.0))
+        y = sign * np.sqrt(np.maximum(above - law.residual(e), 0.0))  # formulas go on to negative roots
         shape = np.broadcast_shapes(np.shape(y), np.shape(e))
         known: dict[str, Callable[[Any], Any]] = {
             "load": lambda y: law.load(piece, y, e),
@@ -191,16 +175,14 @@ class Branch:
         """Return at which heights of a range there is contact, and which formula holds there.
 
         Where summits have radii of their own, separations have these in turn. Under one modulus for all, what
-        a bound asks must rise with the height. Ends within 8 spacings of floating-point numbers of a
-        separation, of where contact starts, of a break of the grading, or of each other, are one. A grading
-        that is not resolved by 4096 pieces is a ValueError.
+        a bound asks must rise with the height.
         """
         h = np.asarray(separations, dtype=np.float64)
         every, start = np.arange(h.size), np.maximum(np.broadcast_to(self.lowest(h), h.shape), low)
         which, edge = self._crossings(grading, h, low, high)
         which = np.concatenate([every, every, which])
         edge = np.concatenate([start, np.full(h.size, high), edge])
-        anchors = np.unique([*start, *h, *grading.breaks, high])
+        anchors = np.unique([*start, *h, *grading.breaks, high])  # ends next to one of them are the same
         nearest = anchors[np.searchsorted((anchors[1:] + anchors[:-1]) / 2, edge)]
         same = 8 * np.spacing(np.maximum(np.abs(edge), np.abs(h[which])))  # found from ``s - h``
         edge = np.maximum(np.where(np.abs(nearest - edge) <= same, nearest, edge), start[which])

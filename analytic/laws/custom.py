@@ -15,6 +15,7 @@ from analytic.piecewise import PiecewiseSeries
 from analytic.resolution import resolved
 
 Formula = Callable[[Any], Any]
+Formulas = Sequence[Formula]
 
 
 class RootSeries(PiecewiseSeries):
@@ -90,12 +91,7 @@ class CustomLaw(ElasticPlastic):
     checked: bool = True
 
     def __init__(
-        self,
-        load: Sequence[Formula],
-        area: Sequence[Formula],
-        limits: Sequence[float],
-        critical: float,
-        checked: bool = True,
+        self, load: Formulas, area: Formulas, limits: Sequence[float], critical: float, checked: bool = True
     ) -> None:
         edges = tuple(map(float, limits))
         hold(self, load_of=tuple(load), area_of=tuple(area), edges=edges, critical=float(critical))

@@ -24,12 +24,10 @@ BRIDGE = 1.5  # a bridge ends at this multiple of the penetration of its jump
 
 
 class Piece(NamedTuple):
-    """What holds from a penetration on: load and area over those at delta_c by Hertz's law.
-
-    Each is factor and exponent of a power of x, or a function of the law, ``u = sqrt(x)`` and e.
-    """
+    """What holds from a penetration on: load and area over those at delta_c by Hertz's law."""
 
     start: float  # ``x = delta/delta_c`` where it begins
+    # each is factor and exponent of a power of x, or a function of the law, ``u = sqrt(x)`` and e
     load: tuple[float, float] | Formula
     area: tuple[float, float] | Formula
 

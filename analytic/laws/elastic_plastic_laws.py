@@ -135,7 +135,8 @@ class KogutEtsion(FromHardness):
     above 110   3 x/K                     2 x
     ==========  ========================  ========================
 
-    ``K = 0.454 + 0.41 nu``. Fitted for x up to 110, frictionless, no hardening, E/Y from 100 to 1000.
+    ``delta_c = (pi K H/(2 E*))^2 R`` with ``K = 0.454 + 0.41 nu``. Fitted for x up to 110, frictionless, no
+    hardening, E/Y from 100 to 1000.
 
     Known defects: the load jumps, x 1.03 at 1, x 1.0168 at 6, x 1.0788 at 110 (nu = 0.3), and the area,
     x 0.93, x 1.0290, x 1.0712: at yield a contact *shrinks* by 7 %. ``bridge = "hermite"`` joins them.
@@ -158,8 +159,8 @@ class KogutEtsion(FromHardness):
 
     Notes
     -----
-    Source: L. Kogut, I. Etsion, J. Appl. Mech. 69 (2002) 657. [Load: constants compared with a public
-    script; area, K: mem, recalled.]
+    Source: L. Kogut, I. Etsion, J. Appl. Mech. 69 (2002) 657, and of K W. R. Chang, I. Etsion, D. B. Bogy,
+    J. Tribol. 110 (1988) 50. [Load: constants compared with a public script; area, K: mem, recalled.]
 
     Examples
     --------

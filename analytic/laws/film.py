@@ -145,10 +145,7 @@ class Film:
         return float(farthest / self.unit) ** 2
 
     def conductance(self, radius: Array, ratios: Array | None = None) -> Array:
-        """Return that of a spot over 4 sqrt(R sigma), in 1/(ohm m) or W/(m K), analytic down to -b.
-
-        Of summits whose radii are these multiples of the surface's, each in units of its own.
-        """
+        """Return that of a spot over 4 sqrt(R sigma), R of its own summit by `ratios`: analytic to -b."""
         a = radius * (self.unit if ratios is None else self.unit * np.sqrt(ratios))
         resists = self._resists(a) + self.alike * self.rho
         return np.asarray(radius * np.divide(a, resists, where=resists != 0, out=np.zeros_like(resists)))

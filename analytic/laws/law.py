@@ -48,7 +48,8 @@ class ContactLaw:
             told = ", ".join(f"{name} = {value!r}" for name, value in given.items())
             raise ValueError(f"{told}: give {advice}")
         check_positive("", **given)
-        check_poisson(getattr(self, "poisson", None))
+        if (poisson := getattr(self, "poisson", None)) is not None:
+            check_poisson(poisson)
 
     @property
     def finest(self) -> float:
@@ -128,7 +129,6 @@ class Hertz(ContactLaw):
 
     Examples
     --------
-    >>> import numpy as np
     >>> float(Hertz().load(0, np.sqrt(4.0), np.array(1.0)))
     8.0
     """
@@ -136,9 +136,9 @@ class Hertz(ContactLaw):
     name = "hertz"
 
 
-def check_poisson(poisson: float | None) -> None:
+def check_poisson(poisson: float) -> None:
     """Refuse a value that is not a Poisson's ratio."""
-    if poisson is not None and not -1 < poisson <= 0.5:
+    if not -1 < poisson <= 0.5:
         raise ValueError(f"poisson = {poisson!r}: give a Poisson's ratio, above -1 and at most 0.5")
 
 
