@@ -41,11 +41,10 @@ class Moments(NamedTuple):
 def specimen_moments(model: Any, given: str, value: float, names: Sequence[str]) -> Moments:
     """Return means and standard deviations over surfaces that all have the same load, or another sum.
 
-    Of the separation, the given sum and others on loading; asperities are independent and never pull. Means
-    are right to 2e-6 mostly, to 1e-3 at worst where heights have heavy tails or a law jumps at the load;
-    standard deviations to 5e-4 of the mean. It is a ValueError if the law of the separation is not known (see
-    `Model.separation_law`), or some surfaces have none; of one asperity alone; and if the given sum is not
-    found again.
+    Of the separation, the given sum and others on loading. Means are right to 2e-6 mostly, to 1e-3 at worst
+    where heights have heavy tails or a law jumps at the load; standard deviations to 5e-4 of the mean. A
+    ValueError if the law of the separation is not known (see `Model.separation_law`), or some surfaces have
+    none; of one asperity alone; and if the given sum is not found again.
 
     Examples
     --------
@@ -61,7 +60,7 @@ def specimen_moments(model: Any, given: str, value: float, names: Sequence[str])
         raise ValueError("load_slope: its slope is not known; give other quantities")
     if model.count == "fixed" and model.number < 2:
         raise ValueError(f"n_asperities = {model.number:g}: give 2 or more; no other bears what one leaves")
-    places, scores = normal_scores(model, given, value, wide=3.0)  # fewer than a law needs: they place nodes
+    places, scores = normal_scores(model, given, value)  # fewer than a law needs: they place nodes
     if scores[0] > -SCORES or scores[-1] < SCORES:  # a Poisson number of asperities may be 0
         raise ValueError(f"{given} = {value:g}: not every surface has a separation with it")
     ends = np.interp([-SCORES, 0.0, SCORES], np.maximum.accumulate(scores), places).tolist()
@@ -91,9 +90,8 @@ def _at_last(model: Any, several: Sequence[str], value: float, high: float) -> t
 
 
 def _integrated(
-    model: Any, several: Sequence[str], value: float, ends: Sequence[float],
-    last: tuple[Array, Array], nodes: int,
-) -> tuple[Array, Array]:  # fmt: skip
+    model: Any, several: Sequence[str], value: float, ends: list[float], last: tuple[Array, Array], nodes: int
+) -> tuple[Array, Array]:
     """Means and standard deviations of the separation and of each sum, from those at the last separation."""
     (low, middle, high), (start, variance), change = ends, last, np.zeros_like(last[0])
     x, w = gauss_legendre(nodes)  # as many on each side of the middle, closer in the shorter half
@@ -113,11 +111,7 @@ def _integrated(
 def _gains(
     model: Any, several: Sequence[str], value: float, h: float, alone: float
 ) -> tuple[float, Array, Array]:
-    """Share of surfaces that are lower than a separation, what these hold there, and the rates.
-
-    What they hold and the rates, for each unit of separation, are means and mean squares of sums, the given
-    one first; of shape (2, several). One asperity `alone` has the value at that penetration.
-    """
+    """Share of surfaces lower than a separation; means and mean squares of sums there; rates of these."""
     n, poisson, given = model.number, model.count == "poisson", several[0]
     one, two = (0, 0) if poisson else (1, 2)  # of a Poisson number there are as many beside one
     step = 3e-4 * min(1 / (1 + abs(h)), alone)  # of differences
@@ -135,35 +129,30 @@ def _gains(
     means, squares = (rule.probabilities * values**k for k in (1, 2))
     low, high, own = in_cells(model, several, h, rule, terms[..., 0], 3072, float(at[-1]))
     cells = (low + high).T / 2 * units  # what asperities add in cells
-    p, added = np.append(rule.probabilities, rule.below), np.append(values[0, 0], 0.0)
     sum_of, square = (float(n * each[0, 0].sum()) for each in (means, squares))
     spread = math.sqrt(square if poisson else max(square - sum_of**2 / n, 0.0))
     start = max(min(sum_of, value) - 12 * spread, 0.0)
     width = (value - start) / (_GRID - 1)
     bear = shares_upto(model, given, h, n - two, np.asarray(start + width * np.arange(_GRID)))
-    left, none = (value - start - added) / width, bear[0] if start == 0 else 0.0
+    left, none = (value - start - np.append(values[0, 0], 0.0)) / width, bear[0] if start == 0 else 0.0
     beside = _beside(left, cells[0] / width, bear, none)
     bears = np.interp(left, np.arange(_GRID), bear, left=0.0)
     bearable = bears if poisson else beside(own) + rule.below * bears
     others = np.array([(n - one) * beside(own * each)[:-1] for each in cells])
 
-    def over_surfaces(weights: Sequence[float], pairs: int) -> Array:
+    def over_surfaces(weights: Array, pairs: int) -> Array:
         """Sum what asperities add, by weights of the steps, to means and, with others, to mean squares."""
-        added, of_squares = (np.asarray(weights) @ each for each in (means, squares))
+        added, of_squares = (weights @ each for each in (means, squares))
         with_others = pairs * np.einsum("ij,ij->i", added, others)
         return np.asarray(n * np.array([added @ bearable[:-1], of_squares @ bearable[:-1] + with_others]))
 
-    lower = bearable[-1] if poisson else p @ bearable
+    lower = bearable[-1] if poisson else np.append(rule.probabilities, rule.below) @ bearable
     rate = np.array([-3.0, 4.0, -1.0]) / (2 * step)
-    return float(lower), over_surfaces((1.0, 0.0, 0.0), 1), over_surfaces(rate.tolist(), 2)
+    return float(lower), over_surfaces(np.array([1.0, 0.0, 0.0]), 1), over_surfaces(rate, 2)
 
 
 def _beside(left: Array, cells: Array, bear: Array, none: float) -> Callable[[Array], Array]:
-    """Return sums of weights of a second asperity, where all others bear what it and the first one leave.
-
-    Of what the first ones leave of the given sum and the second may add, in steps of a grid; of the shares of
-    surfaces that bear each point of it, and what of these jumps at the start: where no other one touches.
-    """
+    """Return sums of weights of a second asperity, where all others bear what it and the first one leave."""
     spectrum, order, points = np.fft.rfft(bear - none, 2 * _GRID), np.argsort(cells), np.arange(_GRID)
     inside = np.flatnonzero(cells < _GRID - 1)
     at = cells[inside].astype(np.int64)

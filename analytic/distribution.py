@@ -98,12 +98,9 @@ class Law:
 
     @cached_property
     def error(self) -> float:
-        """Error bound of `cdf`, from the second computation.
-
-        Their errors may have one sign, and something in common, by a grid of 630 laws.
-        """
+        """Error bound of `cdf`, from the second computation."""
         again, x = self.again(), np.append(self.x, (self.x[1:] + self.x[:-1]) / 2)
-        return float(8 * np.abs(self.cdf(x) - again.cdf(x)).max() + 5e-7)
+        return float(8 * np.abs(self.cdf(x) - again.cdf(x)).max() + 5e-7)  # by a grid of 630 laws
 
     def mapped(self, forward: Callable[[Any], Any], *, falls: bool = False) -> "Law":
         """Return the law of a function that rises, or falls, with the value."""

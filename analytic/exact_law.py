@@ -9,6 +9,7 @@ Surfaces on which no asperity touches, or one, are counted apart, by the distrib
 import math
 from collections.abc import Sequence
 from functools import cache, cached_property, partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -31,10 +32,7 @@ SCORES = 6.0  # normal scores that are looked for
 
 
 class OneAsperity:
-    """What one of the asperities of a surface adds: shares of them, each evenly between two values.
-
-    There are so many on a surface, or in the mean if their number is a Poisson variable.
-    """
+    """What one of a number of asperities adds: shares of them, each evenly between two values."""
 
     def __init__(self, ends: tuple[Array, Array], shares: Array, number: float, poisson: bool) -> None:
         low, high = np.minimum(*ends), np.maximum(*ends)
@@ -62,10 +60,7 @@ class OneAsperity:
 
     @cached_property
     def span(self) -> tuple[float, float, float]:
-        """Lowest sum, highest one of surfaces without rare large values, longest step of a lattice.
-
-        Where an asperity may touch alone any step will do, else a twelfth of the deviation of usual sums.
-        """
+        """Lowest sum, highest one of surfaces without rare large values, longest step of a lattice."""
         x, p, n = self.middle, self.shares, self.number
         rarer = n * np.cumsum(p[::-1])[::-1]
         usual, pull = np.where(rarer > min(1e-2, rarer[0] / 2), x, 0.0), np.minimum(x, 0.0)
@@ -74,7 +69,8 @@ class OneAsperity:
         deepest = pull[min(int(np.searchsorted(n * np.cumsum(p), 1e-9)), x.size - 1)]  # fewer pull more
         low = (n * means - _REACH * spread).max() + 2 * deepest
         high = n * means[0] + _REACH * spread[0] + max(usual.max(), 0.0)
-        return float(low), float(high), np.inf if self.alone > 1e-25 else float(spread[0]) / 12
+        step = np.inf if self.alone > 1e-25 else float(spread[0]) / 12  # any, where one may touch alone
+        return float(low), float(high), step
 
     def upto(self, x: Array, end: float, points: int) -> Array:
         """Return the shares of surfaces in contact with sums up to x, by a lattice to there or beyond."""
@@ -152,10 +148,7 @@ def distribution_of(model: Any, quantity: str, h: float, other: bool = False) ->
 def shares_upto(
     model: Any, quantity: str, h: float, number: float, values: Array, *, other: bool = False
 ) -> Array:
-    """Return the shares, to 1e-6, of surfaces of so many asperities with sums no more than some values, SI.
-
-    By one lattice up to the largest; where that does not resolve the usual sums, shares are a bound.
-    """
+    """Return shares, to 1e-6, or a bound, of surfaces of so many asperities with sums up to values, SI."""
     if number < 1:
         return np.where(values >= 0, 1.0, 0.0)
     one = one_asperity(model, quantity, h, _CELLS[other] // 4, number)
@@ -178,12 +171,9 @@ def one_asperity(model: Any, quantity: str, h: float, cells: int, number: float 
 def in_cells(
     model: Any, several: Sequence[str], h: float, rule: HeightRule, at_nodes: Array, cells: int, lowest: float
 ) -> tuple[Array, Array, Array]:
-    """Return what asperities add, over scales, at both ends of cells between the nodes of a rule, and shares.
-
-    Of shape (cells, quantities); listed heights are cells of no width, others keep the means.
-    """
+    """Return what asperities add, (cells, quantities), at both ends of cells between nodes, and shares."""
     s, p, ratios = rule.heights, rule.probabilities, rule.ratios
-    if not p.any() or isinstance(model.heights, MeasuredHeights):
+    if not p.any() or isinstance(model.heights, MeasuredHeights):  # cells of no width
         return at_nodes, at_nodes, p
     root, radius = np.sqrt(p), np.zeros(p.size) if ratios is None else ratios
     parts = np.ceil(cells * (root / root.sum() + 1 / root.size)).astype(np.int64)
@@ -225,18 +215,9 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
 
 
 def normal_scores(
-    model: Any,
-    quantity: str,
-    value: float,
-    *,
-    wide: float = 1.0,
-    apart: float = math.inf,
-    other: bool = False,
+    model: Any, quantity: str, value: float, *, apart: float = math.inf, other: bool = False
 ) -> tuple[list[float], list[float]]:
-    """Return separations, and normal scores, at most so far `apart`, of the shares with sums up to a value.
-
-    From next to no surface to next to all; sums that may rise with the separation are a ValueError.
-    """
+    """Return separations, and normal scores, at most so far `apart`, of shares with sums up to a value."""
     start = float(model.separation_at(quantity, value))
     rule = model.rule([start], [quantity])
     fall = model.ways.loading.falls(quantity_of(quantity).base, model.grading(rule.heights))
@@ -248,7 +229,7 @@ def normal_scores(
     if fall:
         raise ValueError(
             f"quantity = {quantity!r}: it decreases where the law changes to its piece {fall}, and sums "
-            f"may increase with the separation; use the load"
+            "may increase with the separation; use the load"
         )
 
     @cache
@@ -257,18 +238,18 @@ def normal_scores(
         return float(np.clip(ndtri(np.clip(share[0], 0.0, 1.0)), -SCORES - 0.5, SCORES + 0.5))
 
     spread = float(model.std(quantity, start) / model.slope(quantity, start))  # to first order
-    places, step, moved = [start + other * spread / 7], wide * spread / 3, 1.0
+    places, moved = [start + other * spread / 7], 1.0
+    step = spread / 3 if apart < math.inf else spread
     while score(places[-1]) < SCORES:  # far, where tails are heavy
         places.append(places[-1] + step * 1.25 ** len(places))
     # if shares move no more, the surfaces that are left have no asperity
     while score(places[0]) > -SCORES and moved > 1e-9 and places[0] > LOWEST:
         places.insert(0, max(places[0] - step, LOWEST))
         moved = score(places[1]) - score(places[0])
-    k = 1
-    while k < len(places):
-        left, right = places[k - 1], places[k]
-        if score(right) - score(left) > apart and right - left > 1e-3 * spread:
-            places.insert(k, (left + right) / 2)
-        else:
-            k += 1
+    while between := [
+        (left + right) / 2
+        for left, right in pairwise(places)
+        if score(right) - score(left) > apart and right - left > 1e-3 * spread
+    ]:
+        places = sorted([*places, *between])
     return places, [score(h) for h in places]

@@ -1,10 +1,10 @@
 """A quadrature rule over the heights, and what makes a sum over independent asperities fluctuate.
 
-One surface has N independent asperities (or a Poisson number of them with mean N), so a quantity is
-a sum of N independent terms ``f(s_i)``. Its cumulants follow from integrals over one asperity, taken with a
-fixed set of heights and probabilities (`HeightRule`). Where radii are random the integrals are over the
-curvature too, in the root of which they are smooth: the heights at which a contact changes its law depend on
-the radius alone. So there are some radii, each with pieces of the heights of its own.
+One surface has N independent asperities (or a Poisson number of them with mean N), so the cumulants of a
+quantity are N times integrals over one of them, taken with a fixed set of heights and probabilities. Where
+radii are random the integrals are over the curvature too, in the root of which they are smooth: the heights
+at which a contact changes its law depend on the radius alone. So there are some radii, each with pieces of
+the heights of its own.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -38,10 +38,8 @@ class HeightRule:
 
     Parameters
     ----------
-    heights : ndarray
-        Reduced heights above the lowest separation, shape (m,).
-    probabilities : ndarray
-        Their weights, shape (m,).
+    heights, probabilities : ndarray
+        Reduced heights above the lowest separation, and their weights, shape (m,).
     below : float
         Probability of a height below the lowest separation, where nothing touches.
     ratios : ndarray, optional
@@ -69,7 +67,7 @@ class HeightRule:
 
         `branches` are those of what is summed, `cuts` gives heights at which it jumps or bends besides,
         `powers` are the highest ones of modulus and approach, as of `analytic.quadrature.ends_of`. Heights
-        increase, of each radius; those of a list keep its order, each as probable as another.
+        increase, of each radius; those of a list keep its order.
         """
         branches, h = tuple(branches), np.unique(np.asarray(separations, dtype=np.float64))
         lowest = np.unique([*h, *(branch.lowest(h[0]) for branch in branches)])
@@ -110,33 +108,20 @@ class HeightRule:
         return np.asarray(np.einsum("i,ij->j", self.probabilities, f))
 
     def fluctuations(self, f: Array, count: Count) -> "Fluctuations":
-        """Return what makes sums of the columns of `f` fluctuate.
-
-        For a fixed number of asperities the deviations of the terms from their means, counted from what
-        almost every asperity contributes (nothing, or the same), so that a variance like 1e-89 keeps its
-        digits; for a Poisson number the terms themselves.
-        """
+        """Return what makes sums of the columns of `f` fluctuate: terms, or deviations from their means."""
         mean, p = self.mean(f), np.append(self.probabilities, self.below)
         parts = np.append(f, np.zeros((1, f.shape[1])), axis=0)
         if count == "fixed" and self.heights.size:
-            if self.below <= 0.5:
+            if self.below <= 0.5:  # counted from what almost all add: a variance like 1e-89 keeps its digits
                 parts -= f[np.argmax(self.probabilities)]
             parts -= np.einsum("i,ij->j", p, parts)
         return Fluctuations(p, mean, parts, np.zeros(mean.size))
 
     def terms(
-        self,
-        quantities: Sequence[str],
-        separations: ArrayLike,
-        grading: Grading,
-        ways: Branch,
-        slope: bool = False,
+        self, quantities: Sequence[str], h: ArrayLike, grading: Grading, ways: Branch, slope: bool = False
     ) -> Array:
-        """Return what an asperity adds, over scales of quantities: shape (m, quantities * separations).
-
-        Or with `slope` how that rises as it is pressed, within a piece of the law.
-        """
-        h, modulus = np.asarray(separations, dtype=np.float64), grading(self.heights)
+        """Return what an asperity adds, over scales, or its `slope`: shape (m, quantities * separations)."""
+        h, modulus = np.asarray(h, dtype=np.float64), grading(self.heights)
         if not ways.law.elastic and modulus.min(initial=0.0) < 0:  # nothing yields there
             k = np.flatnonzero(modulus < 0)[-1]
             raise ValueError(
@@ -170,8 +155,6 @@ def _of_heights(law: HeightLaw, left: Array, right: Array) -> tuple[Array, Array
 @dataclass(frozen=True, slots=True)
 class Fluctuations:
     """Random parts of what one asperity contributes to some sums, the columns.
-
-    A sum over N asperities has N times the variance, and N times the third cumulant, of one.
 
     Parameters
     ----------
@@ -211,9 +194,6 @@ class Fluctuations:
         return Fluctuations(self.probabilities, self.mean @ axes, self.parts @ axes, radius)
 
     def whitening(self, least: float) -> Array:
-        """Return the matrix that makes columns of unit variance uncorrelated, shape (columns, axes).
-
-        Combinations with a variance up to `least` are left out: differences of nearly equal columns.
-        """
+        """Return the matrix that makes columns uncorrelated, but combinations of up to `least` variance."""
         size, axes = np.linalg.eigh(self.products())
         return np.asarray(axes[:, size > least] / np.sqrt(size[size > least]))

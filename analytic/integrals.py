@@ -32,6 +32,11 @@ def _relative(n: float, h: float, grading: Grading, breaks: Array) -> float:
     return float(np.sum(width * weight * approach**n * density * grading(above + beyond)))
 
 
+def _by_rule(n: float, h: float, grading: Grading, heights: HeightLaw) -> float:
+    rule = HeightRule.over([h], grading, heights, power=1, exponent=n + 1)
+    return float(rule.probabilities @ (grading(rule.heights) * (rule.heights - h) ** n))
+
+
 def quotient(
     h: ArrayLike, above: tuple[float, Grading | None], below: tuple[float, Grading | None], heights: HeightLaw
 ) -> Array:
@@ -51,12 +56,7 @@ def fn_scaled(
         raise ValueError("h: every separation must be finite")
     grading, flat = Homogeneous() if grading is None else grading, h.ravel().tolist()
     if not isinstance(heights, Gaussian) or not flat:
-        rules = [HeightRule.over([x], grading, heights, power=1, exponent=n + 1) for x in flat]
-        values = [
-            a.probabilities @ (grading(a.heights) * (a.heights - x) ** n)
-            for a, x in zip(rules, flat, strict=True)
-        ]
-        return np.reshape(values, h.shape)
+        return np.reshape([_by_rule(n, x, grading, heights) for x in flat], h.shape)
     breaks = np.array(resolved_breaks(grading, *ends_of(heights, np.unique(h), grading, power=1)))
     values = [_relative(n, x, grading, breaks) for x in flat]
     unit = np.where(h >= 0, 1.0, 1 / np.sqrt(2 * np.pi))
@@ -77,8 +77,8 @@ def fn(
 
     Relative error at most 1e-13 for every h from -40 to 1000. The paper says that no closed form
     exists; there is one: ``Gamma(n+1)/sqrt(2 pi) exp(-h^2/4) D_{-n-1}(h)`` with the parabolic cylinder
-    function D, and ``F*_n(h) = gamma F_n(h) - (gamma-1) sqrt(e) F_n(h+1)`` for Eq. 4. The quadrature
-    used here is the more accurate way to evaluate it and takes any grading; the tests hold it to both.
+    function D, and ``F*_n(h) = gamma F_n(h) - (gamma-1) sqrt(e) F_n(h+1)`` for Eq. 4. Quadrature is more
+    accurate, and takes any grading.
 
     Parameters
     ----------

@@ -32,18 +32,16 @@ import math
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
+from analytic.distribution import Law
 from analytic.quadrature import fall_of
 from analytic.quantities import JOINT, NOT_SUMS, SEPARATIONS, Quantity, quantity_of
 from analytic.surface import Surface, check_positive
-
-if TYPE_CHECKING:
-    from analytic.distribution import Law
 
 Reference = Literal["body", "mean-plane"]
 
@@ -54,10 +52,7 @@ LATTICE = 3.900264920001956
 
 
 def in_series(value: Any, other: float) -> Any:
-    """Stiffness or conductance of the spots in series with what resists besides, over its unit.
-
-    Back again with the opposite one; nan where less than nothing would resist in all.
-    """
+    """Stiffness or conductance in series with what resists besides; nan where less than nothing would."""
     rest = 1 + other * value
     return value / np.where(rest > 0, rest, np.nan)
 
@@ -116,12 +111,6 @@ class Interaction:
 
         Parameters
         ----------
-        quantity : str
-            Its name.
-        surface : Surface
-            Its `E_star` is that of the half-space unless `bulk_modulus` is given.
-        n_asperities : float
-            On the surface.
         resistivity : float, optional
             rho of both bodies, for a conductance that is not given times it.
 
@@ -132,20 +121,15 @@ class Interaction:
         q = quantity_of(quantity)
         name = q.unloading or q.of or q.name
         compliance = self.compliance(surface, n_asperities) * (surface.nominal_area if q.of else 1.0)
-        if name in ("stiffness", "load_slope"):
-            return compliance
-        if name not in ("conductance", "conductance_si"):
-            return 0.0
-        rho = resistivity if name == "conductance_si" else 1.0
-        return self._modulus(surface) * compliance / 2 * rho
+        flux = self._modulus(surface) * compliance / 2
+        added = {"stiffness": compliance, "load_slope": compliance, "conductance": flux}
+        return {**added, "conductance_si": flux * resistivity}.get(name, 0.0)
 
     def bodies(self, surface: Surface, resistivity: float) -> float:
         """Return how the bodies as a whole resist the flux through a unit area of the joint, m^2 K/W.
 
         Parameters
         ----------
-        surface : Surface
-            Whose nominal area the flux is constricted to.
         resistivity : float
             rho of both bodies, m K/W.
 
@@ -192,7 +176,7 @@ class Answer:
             mean = mean + bends[1] * model.cumulants(self.load, h).variance / 2
         return mean, slopes / whole**2
 
-    def law(self, model: Any, h: float) -> "Law":
+    def law(self, model: Any, h: float) -> Law:
         """Return the distribution over surfaces, of what follows from S or P alone."""
         law: Law = model.distribution(self.spots or self.load, h)
         if not self.spots:
@@ -200,9 +184,8 @@ class Answer:
         gas = self.at_plane(np.asarray(h)) if self.at_plane else 0.0
 
         def together(spots: Array) -> Array:
-            """Infinite from the pole on, which no surface reaches."""
             y = in_series(in_series(spots, self.series) / self.per + gas, self.bodies)
-            return np.where(np.isnan(y), np.inf, y)
+            return np.where(np.isnan(y), np.inf, y)  # from the pole on, which no surface reaches
 
         return law.mapped(together)
 

@@ -1,7 +1,4 @@
-"""A rough surface with everything that determines its contact, and its means.
-
-What an asperity adds in the mean is a sum over a rule of heights and radii, by the formulas of its law.
-"""
+"""Means of a rough surface in contact: sums over a rule of heights and radii, by the formulas of a law."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
@@ -87,8 +84,6 @@ class MeanModel:
 
         Parameters
         ----------
-        quantity : str
-            Its name.
         h : array_like
             Reduced separations, any shape.
 
@@ -181,10 +176,8 @@ class MeanModel:
 
         Parameters
         ----------
-        quantity : str
-            The known quantity.
         value : array_like
-            Its values, in its SI unit, any shape.
+            Of the quantity, in its SI unit, any shape.
 
         Returns
         -------
@@ -212,11 +205,7 @@ class MeanModel:
             return last_separations(lambda h: np.log(self._mean(q, h)), np.log(target), grid, about, quantity)
 
     def rule(
-        self,
-        separations: ArrayLike,
-        quantities: Sequence[str] = ("load",),
-        cuts: Cuts | None = None,
-        **powers: float,
+        self, separations: ArrayLike, quantities: Sequence[str], cuts: Cuts | None = None, **powers: float
     ) -> HeightRule:
         """Heights and probabilities for integrals of these quantities of an asperity at these separations."""
         branches = self.ways.among(quantities)
@@ -241,25 +230,22 @@ class MeanModel:
 
     def _in_parts(self, h: ArrayLike, function: Callable[[Array], Array]) -> Array:
         """Return what a function gives for a few separations at a time, which may share a rule."""
+        most = 1 if isinstance(self.heights, MeasuredHeights) else 12
         flat = np.ravel(np.asarray(h, dtype=np.float64))
         if not np.all(np.isfinite(flat)):
             raise ValueError("h: every separation must be finite")
-        parts, order = [], np.argsort(flat)
-        touching = self.heights.sf(flat[order])
-        while order.size:  # the lowest hardly needs what a rule leaves out
-            near = np.count_nonzero(touching >= 1e-12 * touching[0])
-            few = min(near, 1 if isinstance(self.heights, MeasuredHeights) else 12)
-            parts.append(order[:few])
-            order, touching = order[few:], touching[few:]
-        found = [function(flat[few]) for few in parts]
-        rows = np.concatenate(found)[np.argsort(np.concatenate(parts))] if parts else flat
+        order, found = np.argsort(flat), []
+        left = flat[order]
+        while left.size:  # the lowest hardly needs what a rule leaves out
+            touching = self.heights.sf(left[:most])
+            few = np.count_nonzero(touching >= 1e-12 * touching[0])
+            found.append(function(left[:few]))
+            left = left[few:]
+        rows = np.concatenate(found)[np.argsort(order)] if found else flat
         return np.asarray(rows.reshape(np.shape(h) + rows.shape[1:]))
 
     def _grid(self, q: Quantity) -> Array:
-        """Separations from where all touches to where probabilities underflow, or the highest height.
-
-        The lowest is that of the turn, or above it one that has no negative modulus.
-        """
+        """Separations from where all touches, by moduli >= 0, to where probabilities underflow."""
         top, low = min(float(self.heights.isf(np.array(1e-300), 0.0)), 1000.0), LOWEST
         near = min(top, 12.0)
         if not self.ways.law.elastic:

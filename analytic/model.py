@@ -2,21 +2,18 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
 from analytic.curvature import RandomCurvature
+from analytic.distribution import Law
 from analytic.height_rule import Fluctuations
 from analytic.interaction import Answer, answer_of, asked
 from analytic.mean_model import MeanModel
 from analytic.quantities import JOINT, Quantity, quantity_of
 from analytic.surface import check_positive
-
-if TYPE_CHECKING:
-    from analytic.distribution import Law
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,9 +61,8 @@ class Model(MeanModel):
         "load_slope" (N/m), the slope of the load without the jumps of asperities, and "yielded" (1), the
         number of contacts beyond the first piece of the law.
     unload_from : float, optional
-        Lowest separation reached before, d/sigma. Each quantity has a second one for
-        unloading from there, such as "load_unloading"; where asperities yield, it needs this value and a law
-        with known unloading.
+        Lowest separation reached before, d/sigma. Each quantity has a second one for unloading from there,
+        such as "load_unloading"; where asperities yield, it needs this value and a law with known unloading.
     film : Film, optional
         Resistivity or thermal conductivity, and any film; "conductance_si" (S, or W/K) needs it.
     n_asperities : float, optional
@@ -122,9 +118,8 @@ class Model(MeanModel):
         k1, k2, k3, k4 = np.moveaxis(rows, -1, 0) if h.size else np.empty((4, *h.shape))
         n, scale = self.number, q.scale(self.surface)
         with np.errstate(divide="ignore", invalid="ignore"):
-            return Cumulants(
-                n * scale * k1, n * scale**2 * k2, k3 / k2 / np.sqrt(n * k2), k4 / k2 / (n * k2)
-            )  # k2 to a power would underflow long before these ratios overflow
+            ratios = k3 / k2 / np.sqrt(n * k2), k4 / k2 / (n * k2)  # long before, powers of k2 underflow
+            return Cumulants(n * scale * k1, n * scale**2 * k2, *ratios)
 
     def std(self, quantity: str, h: ArrayLike) -> Array:
         """Return the standard deviation over surfaces, in the shape of `h`."""
@@ -139,11 +134,9 @@ class Model(MeanModel):
             Shape (Q, K, Q, K), in the product of the units.
         """
         h = np.asarray(separations, dtype=np.float64)
-        matrix = self.fluctuations(quantities, h).products()
         scale = np.repeat([quantity_of(name).scale(self.surface) for name in quantities], h.size)
-        return np.asarray(self.number * matrix * np.outer(scale, scale)).reshape(
-            2 * (len(quantities), h.size)
-        )
+        matrix = self.number * self.fluctuations(quantities, h).products() * np.outer(scale, scale)
+        return np.reshape(matrix, 2 * (len(quantities), h.size))
 
     def asperities_for(self, quantity: str, h: ArrayLike, std_over_mean: float, *, given: str = "") -> Array:
         """Return the number of asperities that a surface needs for surfaces to differ by so little.
@@ -192,10 +185,9 @@ class Model(MeanModel):
             return np.asarray(self.number * variance / (self.mean(quantity, h) * std_over_mean) ** 2)
 
     def fluctuations(self, quantities: Sequence[str], separations: ArrayLike) -> Fluctuations:
-        """Return the contribution of one asperity to each quantity at each separation, over its scale.
+        """Return what one asperity adds to each quantity at each separation, over its scale, in columns.
 
-        Columns are quantity by quantity, at increasing number of the separation. To leading order where a
-        surface answers by itself.
+        To leading order where a surface answers by itself.
         """
         several = [asked(self, name, separations) for name in quantities]
         h = np.asarray(separations, dtype=np.float64)
@@ -224,13 +216,11 @@ class Model(MeanModel):
         one: Fluctuations = alone.fluctuations(columns, h).turned(axes)
         return replace(one, mean=np.concatenate(means))
 
-    def distribution(self, quantity: str, h: float) -> "Law":
+    def distribution(self, quantity: str, h: float) -> Law:
         """Return the exact distribution over surfaces of a quantity at a separation, as one of `scipy.stats`.
 
         Parameters
         ----------
-        quantity : str
-            Its name.
         h : float
             Reduced separation.
 
@@ -261,7 +251,7 @@ class Model(MeanModel):
             )
         return answer.law(self.alone, float(h))
 
-    def separation_law(self, load: float, quantity: str = "load") -> "Law":
+    def separation_law(self, load: float, quantity: str = "load") -> Law:
         """Return the exact distribution of the separation at a given load: P(h* <= h) = P(S(h) <= load).
 
         Parameters

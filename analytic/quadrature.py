@@ -57,23 +57,17 @@ def towards_both_ends(nodes: int) -> tuple[Array, Array]:
 
 
 def panelled(edges: Array) -> tuple[Array, Array]:
-    """Points and weights of Gauss rules between edges that increase along the first axis: shape (64 m, n).
-
-    Pieces that have no width in any column are left out.
-    """
+    """Points and weights, (64 m, n), of Gauss rules between edges that increase along the first axis."""
     x, w = gauss_legendre(NODES)
     width = np.diff(edges, axis=0)
-    some = width.any(axis=1)
+    some = width.any(axis=1)  # pieces that have a width in a column
     width = width[some][:, None]
     points = edges[:-1][some][:, None] + width * x[:, None]
     return points.reshape(-1, edges.shape[1]), (width * w[:, None]).reshape(-1, edges.shape[1])
 
 
 def in_pieces(left: Array, right: Array, nodes: int = NODES) -> tuple[Array, Array]:
-    """Points and weights piece by piece, whatever power of the distance a function begins or ends with.
-
-    Pieces go from `left` to `right`, shape (k,); every point lies inside its piece. Of shape (k nodes,).
-    """
+    """Points, all inside their piece, and weights of `towards_both_ends` on k pieces, shape (k nodes,)."""
     place, weight = towards_both_ends(nodes)
     left, width = left[:, None], (right - left)[:, None]
     last = np.nextafter(left + width, left)
@@ -85,11 +79,7 @@ def in_pieces(left: Array, right: Array, nodes: int = NODES) -> tuple[Array, Arr
 def ends_of(
     law: HeightLaw, separations: Array, grading: Grading, power: float = POWER, exponent: float = 0.0
 ) -> tuple[float, float]:
-    """Range of the rule: from the lowest separation, or height there is, to where nothing is left.
-
-    Separations increase; `power` and `exponent` are the highest powers of the modulus and of the approach
-    that are summed. A grading that rises too steeply for sums of such powers is a ValueError.
-    """
+    """Range of the rule: from the lowest separation, or height there is, to where nothing is left."""
     low, high = max(float(separations[0]), law.support[0]), law.support[1]
     if not low < high:
         return low, high

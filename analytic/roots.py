@@ -88,12 +88,7 @@ def height_between(law: Any, below: Array, above: Array) -> Array:
 def last_separations(
     log_mean: Callable[[ArrayLike], Array], log_targets: Array, grid: Array, about: Array, name: str
 ) -> Array:
-    """Find the largest separations at which a mean has given values, in the shape of their logarithms.
-
-    `log_mean` takes separations to the logarithm of the mean, nan where that is negative. They are looked for
-    between those of an increasing grid, from where `about` says, which is the same to some digits. A value
-    that is not reached there is a ValueError with the `name`.
-    """
+    """Find the largest separations at which a mean has given values, from what it is `about` at a grid."""
     targets = log_targets.ravel()
     every = np.arange(targets.size)
 
@@ -101,8 +96,7 @@ def last_separations(
         return np.fmax(log_mean(h) - targets[which], -100.0)
 
     last = grid.size - 1
-    low = np.array([np.flatnonzero(about >= target).max(initial=0) for target in targets], dtype=np.int64)
-    low = np.minimum(low, last - 1)
+    low = np.array([np.flatnonzero(about[:last] >= target).max(initial=0) for target in targets], np.int64)
     high = low + 1
     while np.any(deeper := ((more := excess(grid[low], every)) < 0) & (low > 0)):
         low -= deeper
