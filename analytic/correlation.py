@@ -1,8 +1,4 @@
-"""Correlations for the conductance of a joint by its spots, from the roughness of the whole surface.
-
-They know no summits: only the root mean square height `rms` and the mean absolute slope `slope` of both
-surfaces together, and the harmonic mean of the conductivities.
-"""
+"""Correlations for the conductance of a joint by its spots, from the roughness of the whole surface."""
 
 import math
 

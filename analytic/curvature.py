@@ -21,12 +21,11 @@ import scipy
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
-from analytic.nayak import Nayak
+from analytic.nayak import WIDE, Nayak
 from analytic.quadrature import gauss_legendre, panelled
 
 MEAN_CURVATURE = 8 / math.sqrt(3 * math.pi)  # of the summits, over sqrt(m4/3)
 _BLOCK = 1024  # numbers whose rules are summed at a time
-_WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
 
 
 @dataclass(frozen=True)
@@ -79,10 +78,7 @@ class RandomCurvature:
         return self.heights.width / self.heights.std / 2
 
     def rule(self, highest: float) -> tuple[Array, Array]:
-        """Return curvatures, and weights, of summits as high as touch at this separation.
-
-        If there is a bound, the last one is that of all flatter summits.
-        """
+        """Return curvatures, and weights, of summits as high as touch; the last may stand for all flatter."""
         top = float(self.heights.isf(np.array(1e-18), highest))
         first = np.sqrt(MEAN_CURVATURE / self.largest)
         last = max(float(np.sqrt(self.highest(0.0, top))), first)
@@ -120,7 +116,7 @@ class RandomCurvature:
     def highest(self, g: ArrayLike, s: ArrayLike) -> Array:
         """Return curvatures of which there are 1e-20 times as many as of `g`, or as of the usual one."""
         mu, v = self._peak(self._over_rms(s))
-        return np.asarray(mu + np.hypot(np.maximum(np.asarray(g) - mu, 0.0), (_WIDE + 0.5) * math.sqrt(v)))
+        return np.asarray(mu + np.hypot(np.maximum(np.asarray(g) - mu, 0.0), (WIDE + 0.5) * math.sqrt(v)))
 
     def cdf(self, g: ArrayLike, s: ArrayLike) -> Array:
         """Return the probability of a smaller curvature, to full relative accuracy."""
@@ -187,8 +183,8 @@ class RandomCurvature:
             a, b, some = (each.ravel()[k : k + _BLOCK] for each in several)
             x = self._over_rms(some)
             mu, v = self._peak(x)
-            turn, width = mu / (1 + v), _WIDE * math.sqrt(v / (1 + v))
-            ends = [a, turn - width, turn + width, mu - _WIDE * math.sqrt(v), self.highest(0.0, some), b]
+            turn, width = mu / (1 + v), WIDE * math.sqrt(v / (1 + v))
+            ends = [a, turn - width, turn + width, mu - WIDE * math.sqrt(v), self.highest(0.0, some), b]
             root, w = panelled(np.sqrt(np.sort(np.clip(ends, a, b), axis=0)))  # powers of it are whole
             density = np.exp(self._logarithm(root * root, x) - self.heights.log_density(x))
             found[k : k + _BLOCK] = (w * 2 * root ** (7 - 2 * power) * density).sum(axis=0)

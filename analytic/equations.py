@@ -1,11 +1,8 @@
 """The theory as functions of a surface: its means by short names, and the ratios of the paper.
 
 All take ``grading`` (E*(s)/E*, default: homogeneous) and ``heights`` (default: Gaussian); separations h
-are reduced, d/sigma from the mean of the summit heights, any shape.
-
-Contacts that an elastic law describes yield where their greatest pressure reaches K H, at ``delta_c = (pi K
-H/(2 E*))^2 R`` with ``K = 0.454 + 0.41 nu``. Source: L. Kogut, I. Etsion, J. Appl. Mech. 69 (2002) 657, with
-K as W. R. Chang, I. Etsion, D. B. Bogy, J. Tribol. 110 (1988) 50 give it [mem: K recalled].
+are reduced, d/sigma from the mean of the summit heights, any shape. Contacts that an elastic law describes
+yield at the critical penetration delta_c of `analytic.KogutEtsion`.
 """
 
 import math
@@ -23,6 +20,7 @@ from analytic.laws.elastic_plastic_laws import KogutEtsion
 from analytic.model import Model
 from analytic.surface import Surface
 
+Weight = Literal["number", "area", "load"]
 POISSON = 0.3  # of the body that yields, where nobody gives it
 
 
@@ -35,9 +33,8 @@ def mean(
     heights: HeightLaw = GAUSSIAN,
 ) -> Array:
     """Return the mean of a quantity over all surfaces: `Model.mean`, in the shape of `h`."""
-    return Model(surface, grading=Homogeneous() if grading is None else grading, heights=heights).mean(
-        quantity, h
-    )
+    grading = Homogeneous() if grading is None else grading
+    return Model(surface, grading=grading, heights=heights).mean(quantity, h)
 
 
 def load(
@@ -75,8 +72,6 @@ def conductance(surface: Surface, h: ArrayLike, *, rho: float = 1.0, heights: He
 
     Parameters
     ----------
-    surface, h, heights
-        As for `mean`.
     rho : float, optional
         Sum of the two resistivities: ohm m gives 1/ohm, m K/W gives W/K; 1 gives C rho in m.
     """
@@ -95,15 +90,8 @@ def barber_conductance(
 
     Printed are ``-2 dP/d(d/sigma)``, which is a force, a stray ``1/sqrt(2 pi)`` in line 1, a wrong
     sign in line 2, and ``-8/3 F*_{1/2}`` in line 3 where ``dF*_{3/2}/dh = -(3/2) F*_{1/2}`` gives
-    ``+4 F*_{1/2}``. Barber's relation is ``C = 2/(E* rho) |dP/dd|``. For a graded surface even this is
-    no conductance (see `conductance`): it would need a resistivity proportional to 1/E*(s).
-
-    Parameters
-    ----------
-    surface, h, grading, heights
-        As for `mean`.
-    rho : float, optional
-        Sum of the two resistivities, as in `conductance`.
+    ``+4 F*_{1/2}``. Barber's relation is ``C = 2/(E* rho) |dP/dd|``, with rho as in `conductance`. For a
+    graded surface even this is no conductance: it would need a resistivity proportional to 1/E*(s).
 
     Returns
     -------
@@ -144,24 +132,14 @@ def stiffness_ratio(h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUS
 
 
 def mean_modulus(
-    h: ArrayLike,
-    grading: Grading,
-    *,
-    weight: Literal["number", "area", "load"] = "load",
-    heights: HeightLaw = GAUSSIAN,
+    h: ArrayLike, grading: Grading, *, weight: Weight = "load", heights: HeightLaw = GAUSSIAN
 ) -> Array:
     """Return the mean of E*(s)/E* over the asperities in contact.
 
     Parameters
     ----------
-    h : array_like
-        Reduced separations d/sigma.
-    grading : Grading
-        E*(s)/E*.
     weight : {"number", "area", "load"}, optional
         What each contact counts for.
-    heights : HeightLaw, optional
-        Law of the heights.
 
     Returns
     -------

@@ -1,22 +1,15 @@
-"""How the composite modulus depends on height: E*(s)/E*, s in units of sigma.
-
-A grading is a callable of an array of heights with two attributes: `breaks`, the heights where it
-or a derivative jumps, and `smooth`, whether it is resolved by a fixed quadrature rule between them.
-"""
+"""How the composite modulus depends on height: E*(s)/E*, s in units of sigma."""
 
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array, hold
-
-if TYPE_CHECKING:
-    from scipy.interpolate import PchipInterpolator
 
 _STEEPEST = 500.0  # whose exponential is a number, also times a large one
 
@@ -30,7 +23,7 @@ class Grading(Protocol):
 
     @property
     def smooth(self) -> bool:
-        """Whether it varies slowly (on the scale of one sigma) between its breaks."""
+        """Whether it varies slowly, on the scale of one sigma, between them: a fixed rule resolves it."""
 
     def __call__(self, s: Array) -> Array:
         """E*(s)/E* at the heights `s`, in the shape of `s`."""
@@ -42,7 +35,6 @@ class Homogeneous:
 
     Examples
     --------
-    >>> import numpy as np
     >>> Homogeneous()(np.array([0.0, 2.0]))
     array([1., 1.])
     """
@@ -73,7 +65,6 @@ class Exponential:
 
     Examples
     --------
-    >>> import numpy as np
     >>> Exponential(2.0)(np.array([0.0, 30.0]))
     array([1., 2.])
     """
@@ -126,7 +117,6 @@ class Table:
 
     Examples
     --------
-    >>> import numpy as np
     >>> Table([0.0, 1.0, 2.0], [1.0, 1.5, 3.0])(np.array([-1.0, 1.0, 9.0]))
     array([1. , 1.5, 3. ])
     """
@@ -152,7 +142,7 @@ class Table:
         return self.s
 
     @cached_property
-    def _interpolant(self) -> "PchipInterpolator":
+    def _interpolant(self) -> Any:
         from scipy.interpolate import PchipInterpolator  # a third of what the import of all else here takes
 
         return PchipInterpolator(self.s, self.ratio)
@@ -180,7 +170,6 @@ class Custom:
 
     Examples
     --------
-    >>> import numpy as np
     >>> Custom(lambda s: np.where(s > 1, 1.5, 1.0), breaks=(1.0,))(np.array([0.0, 2.0]))
     array([1. , 1.5])
     """
@@ -191,13 +180,7 @@ class Custom:
     checked: bool = True
 
     def __call__(self, s: Array) -> Array:
-        """Values of the function.
-
-        Raises
-        ------
-        ValueError
-            If a value is not finite, or the shape is another one.
-        """
+        """Values of the function; a ValueError where one is not finite, or for another shape."""
         with np.errstate(all="ignore"):  # what comes of it is checked below
             value = np.asarray(self.function(s), dtype=np.float64)
         if value.shape not in (s.shape, ()):

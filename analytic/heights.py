@@ -1,7 +1,4 @@
-"""Distributions of summit heights, reduced to mean 0 and standard deviation 1: normal, exponential, Weibull.
-
-Separations stay d/sigma from the mean height.
-"""
+"""Distributions of summit heights of mean 0 and standard deviation 1: normal, exponential, Weibull."""
 
 import math
 from dataclasses import dataclass
@@ -17,6 +14,7 @@ from analytic.roots import height_between
 _FAR = -30.0  # below, where no height is ever drawn, probabilities underflow
 _BEND = 0.5  # change of the logarithm of the density over a span
 _NO_DENSITY = 1e4  # beyond, a normal density is 0
+_AT_END = 1e-6  # next to an end of the support a density may vanish by rounding
 
 
 def exp_minus_half_square(h: Any) -> Array:
@@ -149,9 +147,6 @@ class Gaussian(HeightLaw):
 GAUSSIAN = Gaussian()
 
 
-_AT_END = 1e-6  # next to an end of the support a density may vanish by rounding
-
-
 @lru_cache(maxsize=4096)  # every quantity asks for the same heights, and a call of scipy's laws is slow
 def narrowest(law: Any, s: float) -> float:
     """Width, halved until no quarter changes the logarithm of the density by more than 1/8."""
@@ -159,9 +154,6 @@ def narrowest(law: Any, s: float) -> float:
     parts = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
     with np.errstate(all="ignore"):  # all at once: a call of scipy's laws takes a millisecond
         change = np.abs(np.diff(law.log_ratio(np.array(s), widths[:, None] * parts)))
-    even = np.flatnonzero(np.all(change <= _BEND / 4, axis=1))
-    if even.size:
-        return float(widths[even[0]])
     if np.isnan(change).all():  # there would be no end of ever smaller cells
         if np.abs(np.array(law.support) - s).min() < _AT_END * max(1.0, abs(s)):
             return _BEND  # a density that vanishes at its end: who asks takes no more than is left
@@ -169,7 +161,8 @@ def narrowest(law: Any, s: float) -> float:
             f"heights: their density is 0 at s = {s:.6g}, inside the support; fill the gap, for example "
             f"with wider bins"
         )
-    return float(widths[-1])
+    even = np.flatnonzero(np.all(change <= _BEND / 4, axis=1))
+    return float(widths[even[0] if even.size else -1])
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ from analytic.quadrature import panelled
 from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
 
 _TERMS = 24
-_WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
+WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
 _LARGEST = 13.5  # curvature tau: exp(-tau^2/4) is 1e-20
 _FAR = 40.0  # standard deviations: beyond, densities underflow
 _STEPS = (0.0, 0.7, 1.4, 2.2, 3.2, 4.5, 6.5, 9.5, 14.0, 20.0, 28.0, _FAR)
@@ -51,7 +51,6 @@ class Nayak(HeightLaw):
 
     Examples
     --------
-    >>> import numpy as np
     >>> round(float(Nayak(5.0).sf(np.array(0.0))), 6)
     0.498232
     """
@@ -141,7 +140,7 @@ def _series(law: Nayak, way: int) -> PiecewiseSeries:
         """Of the integral of ``2 (q - 1 + exp(-q)) exp(exponent)``, q = tau^2/2, over u = tau/sqrt(v)."""
         y = x / width
         a = rho * y  # where a factor has its peak
-        inner = [a - _WIDE, a + np.hypot(np.minimum(a, 0.0), _WIDE)]
+        inner = [a - WIDE, a + np.hypot(np.minimum(a, 0.0), WIDE)]
         most = np.hypot(_LARGEST / math.sqrt(2), np.maximum(x, 0.0) / rho) / width
         u, w = panelled(np.sort(np.clip([0 * x, *inner, most], 0, most), axis=0))
         if way:
@@ -152,8 +151,7 @@ def _series(law: Nayak, way: int) -> PiecewiseSeries:
             factor = math.log(math.sqrt(3) / (2 * math.pi)) - x * x / 2
         largest = exponent.max(axis=0)
         q = (width * u) ** 2
-        # 2 (q - 1 + exp(-q)), of which the small values do not cancel
-        summits = q * q * scipy.special.hyp1f1(1, 3, -q)
+        summits = q * q * scipy.special.hyp1f1(1, 3, -q)  # 2 (q - 1 + exp(-q)), where nothing cancels
         sums = (w * summits * np.exp(exponent - largest)).sum(axis=0)
         return np.asarray(np.log(sums) + largest + factor)
 

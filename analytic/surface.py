@@ -186,10 +186,8 @@ class SpectralMoments:
 
         Parameters
         ----------
-        nominal_area : float
-            m^2.
-        E_star : float
-            Composite modulus, Pa.
+        nominal_area, E_star : float
+            m^2, and the composite modulus, Pa.
 
         Returns
         -------
