@@ -238,8 +238,7 @@ def normal_scores(
         return float(np.clip(ndtri(np.clip(share[0], 0.0, 1.0)), -SCORES - 0.5, SCORES + 0.5))
 
     spread = float(model.std(quantity, start) / model.slope(quantity, start))  # to first order
-    places, moved = [start + other * spread / 7], 1.0
-    step = spread / 3 if apart < math.inf else spread
+    places, step, moved = [start + other * spread / 7], spread / (3 if apart < math.inf else 1), 1.0
     while score(places[-1]) < SCORES:  # far, where tails are heavy
         places.append(places[-1] + step * 1.25 ** len(places))
     # if shares move no more, the surfaces that are left have no asperity

@@ -93,12 +93,9 @@ class Interaction:
             raise ValueError(f'reference = {self.reference!r}: give "body" or "mean-plane"')
         check_positive("Pa", bulk_modulus=self.bulk_modulus)
 
-    def _modulus(self, surface: Surface) -> float:
-        return self.bulk_modulus or surface.E_star  # of the half-space
-
     def compliance(self, surface: Surface, n_asperities: float) -> float:
         """Return how far each newton on the surface lowers the plane that the asperities feel, m/N."""
-        modulus = self._modulus(surface)
+        modulus = self.bulk_modulus or surface.E_star  # of the half-space
         if self.reference == "body":
             return BOWL / (modulus * math.sqrt(surface.nominal_area))
         return -LATTICE / (math.pi * modulus * math.sqrt(n_asperities * surface.nominal_area))
@@ -121,7 +118,7 @@ class Interaction:
         q = quantity_of(quantity)
         name = q.unloading or q.of or q.name
         compliance = self.compliance(surface, n_asperities) * (surface.nominal_area if q.of else 1.0)
-        flux = self._modulus(surface) * compliance / 2
+        flux = (self.bulk_modulus or surface.E_star) * compliance / 2
         added = {"stiffness": compliance, "load_slope": compliance, "conductance": flux}
         return {**added, "conductance_si": flux * resistivity}.get(name, 0.0)
 
