@@ -112,7 +112,8 @@ class Surface:
     E_star: float
 
     def __post_init__(self) -> None:
-        check_positive("", **asdict(self))
+        names = ("sigma", "radius", "eta", "nominal_area", "E_star")
+        check_positive("", **{name: getattr(self, name) for name in names})
 
     @property
     def n_asperities(self) -> float:

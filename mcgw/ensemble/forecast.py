@@ -9,7 +9,7 @@ number of surfaces is a function of the scene alone.
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.special import ndtri
@@ -62,7 +62,7 @@ def forecast(scene: Scene) -> Forecast:
     """
     if scene.rel_err is None:
         return Forecast({}, scene.n_surfaces, ())
-    asked = scene.wanted
+    asked = wanted_of(scene)
     limit, spreads = scene.n_surfaces, {name: spread_of(scene, name) for name in asked}
     needed = {name: _needed(spread, asked[name]) for name, spread in spreads.items()}
     waited = [needed[name][spread.relative**2 <= limit] for name, spread in spreads.items()]
@@ -75,6 +75,14 @@ def forecast(scene: Scene) -> Forecast:
         if n > limit
     )
     return Forecast(needed, surfaces, beyond)
+
+
+def wanted_of(scene: Scene) -> dict[str, Array]:
+    """Wanted relative error of each mean, shape (separations,), for quantities with a wish."""
+    given: Any = {} if scene.rel_err is None else scene.rel_err
+    given = given if isinstance(given, Mapping) else dict.fromkeys(scene.quantities, given)
+    h = len(scene.separations)
+    return {name: np.broadcast_to(np.array(x, dtype=np.float64), h) for name, x in given.items()}
 
 
 def _needed(spread: Spread, asked: Array) -> Array:
@@ -133,7 +141,7 @@ def surfaces_at_loads(scene: Scene, separations: Sequence[float], given: str) ->
     One number for all is kept by load, area, stiffness and conductance, whatever the scene's quantities are.
     It warns if `n_surfaces` is too small.
     """
-    asked = {name: float(share.min()) for name, share in scene.wanted.items()}
+    asked = {name: float(share.min()) for name, share in wanted_of(scene).items()}
     if not isinstance(scene.rel_err, Mapping):
         asked = dict.fromkeys(("load", "area", "stiffness", "conductance"), min(asked.values()))
     asked = {name: share for name, share in asked.items() if name != given}
@@ -159,7 +167,7 @@ def after(ensemble: "Ensemble", scene: Scene) -> list[str]:
         f"{limit / n:.3g} per asperity ({CONFIDENCE:.0%} confidence)"
         for h in np.unique(ensemble.separations[silent])
     ]
-    asked = scene.wanted or dict.fromkeys(scene.quantities, np.ones(len(scene.separations)))
+    asked = wanted_of(scene) or dict.fromkeys(scene.quantities, np.ones(len(scene.separations)))
     for name, most in asked.items():
         reach = spread_of(ensemble.scene, name).reach(m)
         for h, w, rel_err in zip(ensemble.separations[~silent], reach[~silent], most[~silent], strict=True):

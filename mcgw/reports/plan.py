@@ -43,8 +43,11 @@ def plan_text(scene: Scene) -> str:
             facts.append(("" if k else "for", f"rel_err = {target:g}: {needed}"))
         facts.append(("", "means alone: no surfaces, scene.theory is exact"))
     left_out = [name for name in QUANTITIES if name not in scene.quantities]
-    spared = scene.n_asperities - scene.touching
-    not_done = [line.format(spared=spared) for line in PROMISES[known.name].not_done]
+    not_done, spared = list[str](), scene.n_asperities - scene.touching
+    if PROMISES[known.name].needs_density:  # which are those of the heights that touch
+        not_done.append(f"{spared:.4g} asperities per surface lie below every separation and are not drawn")
+    if not PROMISES[known.name].one_by_one:
+        not_done.append("in crowded cells, Gaussian moments are drawn instead of asperities")
     if known.cells and not known.moments:
         not_done.append("no heights are drawn: contacts follow from the numbers in the cells")
     if left_out:

@@ -25,18 +25,14 @@ class Promise:
     one_by_one: bool = True
     own_laws: bool = False  # it adds up summit by summit: each can have breaks of its own in the contact law
     needs_density: bool = False  # it draws from that of the heights, which a list of measured ones has not
-    not_done: tuple[str, ...] = ()  # what it spares, for people; {spared}: asperities that do not touch
 
-
-_UNTOUCHED = "{spared:.4g} asperities per surface lie below every separation and are not drawn"
-_CROWDED = "in crowded cells, Gaussian moments are drawn instead of asperities"
 
 PROMISES = {
     "auto": Promise(own_laws=True),  # it takes one that promises all
     "direct": Promise(own_laws=True),
-    "tail": Promise(own_laws=True, needs_density=True, not_done=(_UNTOUCHED,)),
-    "cells": Promise(needs_density=True, not_done=(_UNTOUCHED,)),
-    "aggregate": Promise(one_by_one=False, needs_density=True, not_done=(_UNTOUCHED, _CROWDED)),
+    "tail": Promise(own_laws=True, needs_density=True),
+    "cells": Promise(needs_density=True),
+    "aggregate": Promise(one_by_one=False, needs_density=True),
 }
 SAMPLERS = tuple(PROMISES)
 

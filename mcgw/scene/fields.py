@@ -10,7 +10,6 @@ import numpy as np
 
 import analytic
 from analytic import HeightLaw, MeasuredRadii, RandomCurvature, SpectralMoments, Surface
-from analytic.arrays import Array
 from analytic.joint import Gap, rise_of_summits
 from analytic.laws import Branch, ContactLaw, Film, Hertz
 from mcgw.scene.contact import Contact, Joint
@@ -73,16 +72,6 @@ class Fields(Flat):
     def uncertainty(self) -> Uncertainty | None:
         """Standard errors of the parameters of the surface; None if they are known."""
         return getattr(self.surface, "uncertainty", None)
-
-    @property
-    def wanted(self) -> dict[str, Array]:
-        """Wanted relative error of each mean, shape (separations,), for quantities with a wish."""
-        given: Any = {} if self.rel_err is None else self.rel_err
-        given = given if isinstance(given, Mapping) else dict.fromkeys(self.quantities, given)
-        return {
-            name: np.broadcast_to(np.array(x, dtype=np.float64), len(self.separations))
-            for name, x in given.items()
-        }
 
     @cached_property
     def touching(self) -> float:
@@ -194,11 +183,6 @@ class Fields(Flat):
     def of_joint(self) -> tuple[str, ...]:
         """Conductances of a joint other than those of its spots."""
         return tuple(name for name in self.tables if name in analytic.JOINT)
-
-    @property
-    def other_separations(self) -> tuple[str, ...]:
-        """Nominal separations of an ensemble whose asperities press each other down."""
-        return tuple(name for name in self.tables if name in analytic.SEPARATIONS)
 
     @property
     def answers(self) -> tuple[str, ...]:

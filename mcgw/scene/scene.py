@@ -226,7 +226,10 @@ def _refuse_mistakes(scene: Scene) -> None:
         checks.append(scene.joint.mistakes)
     if scene.interaction is not None:
         checks.append(interaction_mistakes)
-    if scene.law.name == "custom" or not _harmless(scene.grading, scene.lowest, usual):
+    grading, fine = scene.grading, isinstance(scene.grading, Homogeneous)
+    if usual and type(grading) is Exponential and grading.smooth:
+        fine = all(0 <= end < _VAST for end in grading.ends(scene.lowest))
+    if scene.law.name == "custom" or not fine:
         from mcgw.scene.moduli import modulus_mistakes  # for those scenes alone
 
         checks.append(modulus_mistakes)
@@ -235,13 +238,6 @@ def _refuse_mistakes(scene: Scene) -> None:
         found = found or list(check(scene))
     if found:
         raise SceneError(found)
-
-
-def _harmless(grading: Grading, lowest: float, usual: bool) -> bool:
-    """Whether it is known in closed form to be neither negative nor vast from the lowest separation on."""
-    if usual and type(grading) is Exponential and grading.smooth:
-        return all(0 <= end < _VAST for end in grading.ends(lowest))
-    return isinstance(grading, Homogeneous)
 
 
 def with_sampling(scene: Scene, **changes: Any) -> Scene:

@@ -36,9 +36,6 @@ class UncertainSurface(Plain):
 
     uncertainty: Uncertainty | None = None
 
-    def __post_init__(self) -> None:
-        Plain(*(getattr(self, key) for key in SURFACE_UNITS))  # whose numbers are checked
-
 
 @dataclass(frozen=True)
 class Spectral:
