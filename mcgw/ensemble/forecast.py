@@ -53,17 +53,18 @@ class Forecast:
         )
 
 
-def forecast(scene: Scene) -> Forecast:
+def forecast(scene: Scene, spreads: Mapping[str, Spread] | None = None) -> Forecast:
     """Return the number of surfaces of a scene, a function of the scene alone.
 
     With `rel_err` it is the smallest of `checkpoints` with which the 95 % interval of every mean that is
     asked for reaches no farther than that share of it, but at most `n_surfaces`. A mean that would not be
-    known to a factor of two with that many is not waited for. Without, it is `n_surfaces`.
+    known to a factor of two with that many is not waited for. Without, it is `n_surfaces`. Its quantities
+    may have known `spreads`.
     """
     if scene.rel_err is None:
         return Forecast({}, scene.n_surfaces, ())
     asked = wanted_of(scene)
-    limit, spreads = scene.n_surfaces, {name: spread_of(scene, name) for name in asked}
+    limit, spreads = scene.n_surfaces, spreads or {name: spread_of(scene, name) for name in asked}
     needed = {name: _needed(spread, asked[name]) for name, spread in spreads.items()}
     waited = [needed[name][spread.relative**2 <= limit] for name, spread in spreads.items()]
     most = max(float(n.max(initial=0.0)) for n in waited)

@@ -3,11 +3,11 @@
 from analytic import QUANTITIES
 from mcgw.ensemble.drawing import reducer_of
 from mcgw.ensemble.forecast import MOST_SURFACES, forecast, in_words, rough_seconds
-from mcgw.ensemble.intervals import laws_are_quick
+from mcgw.ensemble.intervals import laws_are_quick, spread_of
 from mcgw.machine.terminal import listed, one_line
 from mcgw.sampling.expected import Expected, expected
 from mcgw.scene.ensemble import PROMISES
-from mcgw.scene.scene import Scene, storable
+from mcgw.scene.scene import Scene, storable, with_sampling
 from mcgw.scene.writing import contact_facts
 
 _WORTH, _CROWD = 1.5, 300  # times faster, to be told; asperities of a cell, for crowds to pay
@@ -36,8 +36,9 @@ def plan_text(scene: Scene) -> str:
         ("accuracy", _accuracy(scene, known, surfaces)),
     ]
     if scene.interaction is None and not scene.as_measured and laws_are_quick(scene):
+        spreads = {name: spread_of(scene, name) for name in scene.quantities}
         for k, target in enumerate((1e-2, 1e-3)):  # 95 % bounds of means
-            found = forecast(scene.replace(rel_err=target, n_surfaces=MOST_SURFACES))
+            found = forecast(with_sampling(scene, rel_err=target, n_surfaces=MOST_SURFACES), spreads)
             some = f", all but {len(found.out_of_reach)} means" if found.out_of_reach else ""
             needed = f"{found.surfaces:.2g} surfaces, {in_words(seconds / surfaces * found.surfaces)}{some}"
             facts.append(("" if k else "for", f"rel_err = {target:g}: {needed}"))
