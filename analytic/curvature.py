@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
 from analytic.nayak import WIDE, Nayak
-from analytic.quadrature import gauss_legendre, panelled
+from analytic.quadrature import SPANS, WIDEST, gauss_legendre, panelled
 
 MEAN_CURVATURE = 8 / math.sqrt(3 * math.pi)  # of the summits, over sqrt(m4/3)
 _BLOCK = 1024  # numbers whose rules are summed at a time
@@ -77,17 +77,18 @@ class RandomCurvature:
         """Range of reduced heights over which the density at one curvature hardly bends."""
         return self.heights.width / self.heights.std / 2
 
-    def rule(self, highest: float) -> tuple[Array, Array]:
-        """Return curvatures, and weights, of summits as high as touch; the last may stand for all flatter."""
+    def rule(self, highest: float, low: float, high: float) -> tuple[Array, Array, Array]:
+        """Return curvatures and weights of summits as high as touch, and ends of pieces of their heights."""
         top = float(self.heights.isf(np.array(1e-18), highest))
         first = np.sqrt(MEAN_CURVATURE / self.largest)
         last = max(float(np.sqrt(self.highest(0.0, top))), first)
         x, w = gauss_legendre(int(np.ceil(64 * max(1.0, 0.6 / self.narrowest))))  # more where densities bend
         roots = first + (last - first) * x
         curvatures, weights = roots**2, 2 * roots * (last - first) * w
-        if first > 0:
+        if first > 0:  # that of all flatter summits
             curvatures, weights = np.append(curvatures, first**2), np.append(weights, 1.0)
-        return curvatures, weights
+        pieces = int(np.ceil((high - low) / min(SPANS * self.narrowest, WIDEST)))
+        return curvatures, weights, np.linspace(low, high, pieces + 1)
 
     def density(self, s: Array, g: Array) -> Array:
         """Return the density of the heights `s` of summits of curvatures `g` of a rule, shape (n,)."""

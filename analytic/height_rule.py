@@ -21,7 +21,7 @@ from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.laws.branch import Branch
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
-from analytic.quadrature import NODES, SPANS, WIDEST, ends_of, in_pieces, regular_edges
+from analytic.quadrature import NODES, ends_of, in_pieces, regular_edges
 from analytic.resolution import resolved_breaks
 
 Count = Literal["fixed", "poisson"]
@@ -78,15 +78,14 @@ class HeightRule:
             ratios = np.array(radii.ratios)[touching] if isinstance(radii, MeasuredRadii) else None
             return cls(s[touching], np.full(touching.sum(), 1 / s.size), below, ratios)
         start, top = ends_of(heights, lowest, grading, **powers)
-        own = radii if isinstance(radii, RandomCurvature) else None
         if not start < top:
-            return cls(np.empty(0), np.empty(0), below, None if own is None else np.empty(0))
+            return cls(np.empty(0), np.empty(0), below)
+        own = radii if isinstance(radii, RandomCurvature) else None
         if own is None:
             ratios, regular = np.ones(1), np.array(regular_edges(heights, start, top))
         else:
-            curvatures, of_radii = own.rule(h[-1])
-            pieces = np.ceil((top - start) / min(SPANS * own.narrowest, WIDEST))
-            ratios, regular = MEAN_CURVATURE / curvatures, np.linspace(start, top, int(pieces) + 1)
+            curvatures, of_radii, regular = own.rule(h[-1], start, top)
+            ratios = MEAN_CURVATURE / curvatures
         ends = [np.concatenate([regular, resolved_breaks(grading, start, top), lowest])] * ratios.size
         if cuts is not None:
             ends = [np.append(*each) for each in zip(ends, cuts(ratios).T, strict=True)]
