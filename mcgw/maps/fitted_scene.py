@@ -20,6 +20,7 @@ from mcgw.scene.ensemble import Sampling
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.keys import KEYS
 from mcgw.scene.kinds import argument
+from mcgw.scene.laws import evenly
 from mcgw.scene.measured import MOMENTS, SUMMITS, Fitted, Uncertainty
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document
@@ -250,8 +251,7 @@ def _in_few_lines(text: str, separations: Sequence[float]) -> str:
         return line if len(line) <= 110 else found[0]  # characters of a list in a scene
 
     start, stop, num = separations[0], separations[-1], len(separations)
-    even = [float(f"{h:.15g}") for h in np.linspace(start, stop, num)]  # as a range is read
-    if num > 1 and even == list(separations):
+    if num > 1 and evenly(start, stop, num) == tuple(separations):
         of_range = f"separations = {{start = {start!r}, stop = {stop!r}, num = {num}}}"
         text = re.sub(r"^separations = \[[^\]]*\]", of_range, text, flags=re.MULTILINE)
     return re.sub(r"^\w+ = \[\n(?: .*\n)*\]", short, text, flags=re.MULTILINE)
