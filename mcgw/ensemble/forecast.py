@@ -154,7 +154,7 @@ def surfaces_at_loads(scene: Scene, separations: Sequence[float], given: str) ->
 
 def before(forecast: Forecast, seconds_each: float) -> str:
     """One line: number of surfaces, time, and means that miss the wanted accuracy."""
-    line = f"about {forecast.surfaces:.2g} surfaces, {forecast.surfaces * seconds_each:.2g} s"
+    line = f"about {forecast.surfaces:.2g} surfaces, {in_words(forecast.surfaces * seconds_each)}"
     return f"{line}; {forecast.shortfall}" if forecast.shortfall else line
 
 

@@ -129,7 +129,8 @@ def test_run_says_how_many_and_what_is_not_known(make_scene, tmp_path, capsys):
     (tmp_path / "s.toml").write_text(mcgw.scene_text(asked))
     out = out_of(["run", tmp_path / "s.toml", "-o", tmp_path / "e.h5"], capsys)
     ensemble = mcgw.open_ensemble(tmp_path / "e.h5")
-    assert 0 < float(re.search(r"forecast: about 70 surfaces, (\S+) s; ", out)[1]) < 60
+    told, unit = re.search(r"forecast: about 70 surfaces, (\S+) (ms|s); ", out).groups()
+    assert 0 < float(told) * {"ms": 1e-3, "s": 1.0}[unit] < 60
     assert f"{tmp_path / 'e.h5'}: 70 surfaces of 3000 asperities, seed 1" in out
     limit = -math.log(0.05) / 70
     assert f"d/sigma = 9: no contact in 70 surfaces, mean below {limit:.3g} contacts per surface" in out
