@@ -40,7 +40,7 @@ from mcgw.machine.compiling import njit
 
 BUFFER = 1024  # uniforms at a time: they stay in the innermost cache
 PLAIN, ROOTED, WORDS = BUFFER, BUFFER + 32, BUFFER + 64
-TOGETHER = 16  # uniforms: loops take a multiple, so that no vector loop leaves any over
+TOGETHER = 8  # uniforms: loops take a multiple, so that vector loops leave few over
 _FAST = {"reassoc", "contract", "nsz"}
 _ORDERS = ((9, 0), (10, 0), (12, 0), (16, 0), (21, 0), (6, 6), (12, 6), (14, 11), (21, 21))
 _WEIGHTED = (6, 11, 21)
