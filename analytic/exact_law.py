@@ -69,8 +69,7 @@ class OneAsperity:
         deepest = pull[min(int(np.searchsorted(n * np.cumsum(p), 1e-9)), x.size - 1)]  # fewer pull more
         low = (n * means - _REACH * spread).max() + 2 * deepest
         high = n * means[0] + _REACH * spread[0] + max(usual.max(), 0.0)
-        step = np.inf if self.alone > 1e-25 else float(spread[0]) / 12  # any, where one may touch alone
-        return float(low), float(high), step
+        return float(low), float(high), np.inf if self.alone > 1e-25 else float(spread[0]) / 12
 
     def upto(self, x: Array, end: float, points: int) -> Array:
         """Return the shares of surfaces in contact with sums up to x, by a lattice to there or beyond."""

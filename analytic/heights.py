@@ -69,8 +69,7 @@ class HeightLaw(Protocol):
 
     def log_ratio(self, s: Array, t: Array) -> Array:
         """Return ``log(pdf(s + t)/pdf(s))``, accurate for small `t`."""
-        before = self.log_pdf(s)
-        return np.asarray(self.log_pdf(np.clip(np.asarray(s) + t, *self.support)) - before)
+        return np.asarray(self.log_pdf(np.clip(np.asarray(s) + t, *self.support)) - self.log_pdf(s))
 
     def cdf(self, s: Array) -> Array:
         """Return the probability of a height below `s`, to full relative accuracy."""

@@ -130,8 +130,7 @@ class PiecewiseSeries:
         s = s[self(s) != 0]
         sign = np.sign(self(s))
         change = np.flatnonzero(sign[1:] != sign[:-1])
-        left, right = s[change], s[change + 1]
-        behind = sign_changes(lambda x, _: self(x), left, right, np.zeros(change.size))
+        behind = sign_changes(lambda x, _: self(x), s[change], s[change + 1], np.zeros(change.size))
         return tuple(behind.tolist())  # the first heights on the far side
 
 

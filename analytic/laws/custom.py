@@ -163,10 +163,9 @@ class CustomLaw(ElasticPlastic):
             return
         start = self.edges[piece - 1] if piece else min(self.edges, default=1.0)
         u = np.sqrt(start) * (np.array([1.1]) if piece else np.array([-0.5, 0.5]))
-        good = False
         with np.errstate(all="ignore"), suppress(TypeError):
-            good = all(np.all(np.isfinite(formula(v))) for v in (u, u + 1j * STEP * np.abs(u)))
-        if not good:
-            also = ", also negative ones," if piece == 0 else ""
-            name += f"[{piece}]"
-            raise ValueError(f"{name}: it must give finite numbers for arrays{also} of real and complex u")
+            if all(np.all(np.isfinite(formula(v))) for v in (u, u + 1j * STEP * np.abs(u))):
+                return
+        also = ", also negative ones," if piece == 0 else ""
+        name += f"[{piece}]"
+        raise ValueError(f"{name}: it must give finite numbers for arrays{also} of real and complex u")
