@@ -93,6 +93,11 @@ def barber_conductance(
     ``+4 F*_{1/2}``. Barber's relation is ``C = 2/(E* rho) |dP/dd|``, with rho as in `conductance`. For a
     graded surface even this is no conductance: it would need a resistivity proportional to 1/E*(s).
 
+    Parameters
+    ----------
+    surface, h, grading, rho, heights
+        As for `mean` and `conductance`.
+
     Returns
     -------
     ndarray

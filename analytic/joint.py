@@ -139,44 +139,39 @@ class Joint:
         gas, sigma, rms = self.held, surface.sigma, self.rms
         if gas is None:
             return Gap(None, sigma, sigma, 0.0)
-        rise = rise_of_summits(surface, heights, moments, rms)
-        if isinstance(heights, Nayak):
-            if rms is not None:
-                raise ValueError(f"rms = {rms!r}: it follows from the heights; leave it out")
-            rms = sigma / heights.std
-        elif rms is None and moments is not None:
-            rms = math.sqrt(moments.m0)
-        if rms is None or rise is None:
+        if isinstance(heights, Nayak) and rms is not None:
+            raise ValueError(f"rms = {rms!r}: it follows from the heights; leave it out")
+        if (found := above_surface(surface, heights, moments, rms)) is None:
             raise ValueError("rms: give the root mean square height of the surface (not of its summits), m")
-        return Gap(gas, sigma, rms, rise)
+        return Gap(gas, sigma, *found)
 
 
-def rise_of_summits(
+def above_surface(
     surface: Surface, heights: Any, moments: SpectralMoments | None = None, rms: float | None = None
-) -> float | None:
-    """Return how far the mean plane of the summits lies above that of the surface, over sigma.
+) -> tuple[float, float] | None:
+    """Return the rms height of the surface, m, and how far above its mean plane that of its summits lies.
 
-    It is ``4 sqrt(m0/(pi alpha))/sigma``, by Nayak's heights, the root mean square height of the surface (m),
-    or its moments, in this order; None if none of them tells m0 and alpha.
+    The latter is ``4 sqrt(m0/(pi alpha))/sigma``. By Nayak's heights, a given rms height, or moments, in this
+    order; None if none of them tells m0 and alpha.
 
     Examples
     --------
     >>> import analytic
     >>> surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e10, nominal_area=1e-4, E_star=1e11)
-    >>> round(rise_of_summits(surface, analytic.Gaussian(), rms=1.1e-6), 4)
-    1.0921
+    >>> [round(x, 7) for x in above_surface(surface, analytic.Gaussian(), rms=1.1e-6)]
+    [1.1e-06, 1.0920575]
     """
     sigma = surface.sigma
     if isinstance(heights, Nayak):
-        return heights.mean / heights.std
+        return sigma / heights.std, heights.mean / heights.std
     if rms is None:
-        return None if moments is None else moments.mean_height / sigma
+        return None if moments is None else (math.sqrt(moments.m0), moments.mean_height / sigma)
     if rms <= sigma:
         raise ValueError(
             f"rms = {rms!r}: give more than sigma = {sigma:g} m, which is that of the summits alone"
         )
     alpha = SUMMIT_SPREAD / (1 - (sigma / rms) ** 2)
-    return 4 * rms / math.sqrt(math.pi * alpha) / sigma
+    return rms, 4 * rms / math.sqrt(math.pi * alpha) / sigma
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,6 @@
 """Contact laws of one asperity, and those of scene files by their names there."""
 
+from analytic.laws import adhesion, elastic, elastic_plastic_laws, law
 from analytic.laws.adhesion import DerjaguinMullerToporov, JohnsonKendallRoberts
 from analytic.laws.branch import Branch, Regimes
 from analytic.laws.custom import CustomLaw
@@ -14,8 +15,10 @@ __all__ = [
     "ZhaoMaiettaChang", "by_name", "crowding_factor", "piece_of",
 ]  # fmt: skip
 
-_LAWS: tuple[type[ContactLaw], ...] = (
-    Hertz, ChangEtsionBogy, ZhaoMaiettaChang, KogutEtsion, JacksonGreen, PowerLawGraded, Coated,
-    DerjaguinMullerToporov, JohnsonKendallRoberts,
-)  # fmt: skip
-by_name = {law.name: law for law in _LAWS}
+_FILES = law, elastic_plastic_laws, elastic, adhesion  # in which each class with its own name is a law
+by_name: dict[str, type[ContactLaw]] = {
+    each.name: each
+    for file in _FILES
+    for each in vars(file).values()
+    if getattr(each, "__module__", "") == file.__name__ and "name" in vars(each)
+}

@@ -10,7 +10,7 @@ import numpy as np
 
 import analytic
 from analytic import HeightLaw, MeasuredRadii, RandomCurvature, SpectralMoments, Surface
-from analytic.joint import Gap, rise_of_summits
+from analytic.joint import Gap, above_surface
 from analytic.laws import Branch, ContactLaw, Film, Hertz
 from mcgw.scene.contact import Contact, Joint
 from mcgw.scene.ensemble import Sampling
@@ -114,7 +114,8 @@ class Fields(Flat):
     def rise(self) -> float | None:
         """Height of the mean plane of the summits above that of the surface, over sigma; None if unknown."""
         rms = None if self.gas is None else self.gas.rms
-        return rise_of_summits(self.surface, self.heights, self.moments, rms)
+        found = above_surface(self.surface, self.heights, self.moments, rms)
+        return None if found is None else found[1]
 
     @property
     def gap(self) -> str:
