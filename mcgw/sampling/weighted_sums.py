@@ -82,11 +82,13 @@ def _sum_cells(who: Any, kinds: Any, mesh: Any, table: Any, counts: Any, bounds:
                     sums = _SUMS + 3 * _MOST * kind
                     _factor(w, whole, squares[kind // 2], kind % 2)
                     add_weighted(w, whole, 0, many[kind], _FACTOR, sums)
-                    add_compensated(w[sums + _MOST : sums + 3 * _MOST], w, sums, _MOST)
+                    if n > BUFFER:
+                        add_compensated(w[sums + _MOST : sums + 3 * _MOST], w, sums, _MOST)
         for kind in range(many.size):
-            sums, row = _SUMS + (3 * kind + 1) * _MOST, starts[cell, kind]
+            sums, row = _SUMS + 3 * kind * _MOST, starts[cell, kind]
             for j in range(many[kind]):
-                moments[row + j, surface] = w[sums + j] + w[sums + _MOST + j]
+                totals = w[sums + _MOST + j] + w[sums + 2 * _MOST + j]  # of more than fit the buffer
+                moments[row + j, surface] = w[sums + j] + totals
             unfold(moments, row, many[kind], surface, surface + 1)
 
 
