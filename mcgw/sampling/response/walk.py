@@ -209,9 +209,9 @@ def _all_series(
             tail += abs(c[k, i])
             values[k, i] = tail
         if rough[r] and math.isfinite(low[r]):
-            digits = max(digits, _lost_digits(start[n], low[r]))
+            digits = max(digits, _lost_digits(start[n], low[r], end[n] - start[n]))
         if lost[r]:
-            digits = max(digits, _lost_digits(end[n], high[r]))
+            digits = max(digits, _lost_digits(end[n], high[r], end[n] - start[n]))
         enough = accuracy * max((even[n] if graded[r] else 1.0) * tail, total[r] / crowd[n])
         alone, kept = max(enough, digits * tail), max(enough / (_NODES if of_many else 1), digits * tail)
         needed = order
@@ -227,10 +227,14 @@ def _all_series(
 
 
 @njit()
-def _lost_digits(edge: Any, end: Any) -> Any:
-    """Return what the last digit of a height makes of a power of its distance from the end of a row."""
+def _lost_digits(edge: Any, end: Any, width: Any) -> Any:
+    """Return what the last digit of a height makes of a power of its distance from the end of a row.
+
+    On a node that is wider than this distance the power is much larger elsewhere, and errors with it.
+    """
     distance = abs(edge - end)
-    return min(_DIGITS * np.spacing(abs(edge)) / distance, 1.0) if distance > 0 else 0.0
+    lost = _DIGITS * np.spacing(abs(edge)) / max(distance, width)
+    return min(lost, 1.0) if distance > 0 else 0.0
 
 
 @njit(cache=True)
