@@ -143,7 +143,14 @@ class ScipyHeights(HeightLaw):
         return np.asarray(self.distribution.sf(self._x(s)))
 
     def between(self, below: Array, above: Array) -> Array:
-        """Return its ``ppf`` or ``isf`` of the smaller share; as any law where SciPy loses it in the tail."""
+        """Return its ``ppf`` or ``isf`` of the smaller share; as any law where SciPy loses it in the tail.
+
+        And where SciPy has no formula of its own: it would search the root of one share after another.
+        """
+        from scipy import stats
+
+        if getattr(type(getattr(self.distribution, "dist", None)), "_ppf", None) is stats.rv_continuous._ppf:
+            return super().between(below, above)
         found, law, (mean, std) = np.empty(below.shape), self.distribution, self._mean_std
         lost = np.ones(below.shape, dtype=bool)
         low = below < above

@@ -110,11 +110,6 @@ class JohnsonKendallRoberts(_Adhesive):
     stiff = False
     pulled: ClassVar[bool] = False  # true of the law of contacts that formed and are pulled
 
-    @property
-    def finest(self) -> float:
-        """The formulas end where contacts break off."""
-        return float(self.reduced("pull_off"))
-
     def stretch(self, e: Array) -> Array:
         """Return D_e, in the shape of `e`; infinite without stiffness."""
         with np.errstate(divide="ignore"):

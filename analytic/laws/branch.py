@@ -84,11 +84,6 @@ class Branch:
             return replace(self, ratios=np.broadcast_to(self.ratios, which.shape)[which])
         return replace(self, ratios=self.ratios[which % self.ratios.size])
 
-    @property
-    def finest(self) -> float:
-        """How far above first touch formulas are analytic."""
-        return min(self.law.finest, self.film.finest) if self.film else self.law.finest
-
     def terms(
         self, quantities: Sequence[str], h: ArrayLike, s: ArrayLike, e: ArrayLike, *, slope: bool = False
     ) -> Array:

@@ -147,11 +147,6 @@ class Coated(ContactLaw):
         super().__post_init__()
         check_positive("", ratio=self.ratio)
 
-    @property
-    def finest(self) -> float:
-        """How far above first touch the formulas are analytic: arctan(a/t) up to ``|a|`` = t."""
-        return float(self.reduced("reduced_thickness")) ** 2
-
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Return the load of a contact, in the shape of `y` and `e`, as an integral of its stiffness."""
         t, nu = self.reduced("reduced_thickness"), self.poisson

@@ -14,7 +14,6 @@ from analytic.arrays import Array, hold
 from analytic.surface import Surface, check_positive
 
 _ALTERNATING = 24  # terms of an alternating sum, whose error is 5.8 to that power
-_REACH = np.geomspace(1e-4, 1e4, 401)  # radii over thicknesses at which a pole is looked for
 
 
 @dataclass(frozen=True)
@@ -132,17 +131,6 @@ class Film:
         reduced = copy(self)
         hold(reduced, unit=math.sqrt(surface.radius * surface.sigma))
         return reduced
-
-    @property
-    def finest(self) -> float:
-        """How far above first touch it is analytic: radii that go on to negative ones meet a pole."""
-        farthest = self.alike or math.inf
-        if self.layer is not None:
-            thickness, film = self.layer.thickness, self.alike * self.rho
-            resists = self._resists(-_REACH * thickness) + film  # branch points are at radii of i n t
-            changes = np.flatnonzero((resists < 0) != (film == 0))
-            farthest = thickness * float(min([1.0, *_REACH[np.maximum(changes[:1] - 1, 0)]]))
-        return float(farthest / self.unit) ** 2
 
     def conductance(self, radius: Array, ratios: Array | None = None) -> Array:
         """Return that of a spot over 4 sqrt(R sigma), R of its own summit by `ratios`: analytic to -b."""

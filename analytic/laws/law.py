@@ -51,11 +51,6 @@ class ContactLaw:
         if (poisson := getattr(self, "poisson", None)) is not None:
             check_poisson(poisson)
 
-    @property
-    def finest(self) -> float:
-        """How far above first touch formulas are analytic, in penetration; infinite if powers of y alone."""
-        return math.inf
-
     def given(self) -> dict[str, Any]:
         """Return the constants of the law that the user gave, by name."""
         known: list[str] = [field.name for field in fields(self)] if is_dataclass(self) else []

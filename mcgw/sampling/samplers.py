@@ -29,6 +29,7 @@ from mcgw.scene.scene import Scene, storable
 
 _GAUSSIAN, _WORTH = 300, 1.5  # asperities that a crowded cell takes as long as; times that much faster
 _CUTS = 16  # in four, of a cell on which the modulus, and the law of contact under it, are not resolved
+_MANY = 2**15  # cells: of a law that changes by more than so many resolve there is nothing to be had
 _SAME = 1e-10  # a kink so near to an edge was found, not told: no value is off by more
 
 
@@ -102,7 +103,7 @@ def _counted(name: str, scene: Scene, mesh: Mesh) -> Counted:
             assert table is not None
             return Counted(name, scene, mesh, response, WithRadii(mesh, table, response), table)
         except UnresolvedError as error:
-            if cuts == _CUTS:
+            if cuts == _CUTS or mesh.size > _MANY:
                 raise
             mesh, cuts = cut(scene, mesh, error.starts), cuts + 1
 

@@ -13,7 +13,6 @@ from mcgw.scene.scene import Scene
 
 _NOTHING = 1e-12  # penetration
 SMALLEST = 2.0**-30  # cell next to the beginning, or the loss, of a power that no series resolves
-_ANALYTIC = 4.0  # how far a formula is analytic, in widths of the cell at which it begins
 
 
 @dataclass(frozen=True)
@@ -82,8 +81,6 @@ def begins_and_breaks(scene: Scene, low: float, high: float) -> tuple[Array, Arr
         breaks += [found.low, found.high]
         rough = (pieces > 0) | (not branch.law.root)
         breaks.append(starts[rough] + SMALLEST)
-        if np.isfinite(branch.finest):
-            breaks.append(starts[~rough] + branch.finest / _ANALYTIC)
     edges = np.unique(np.concatenate([np.empty(0), *breaks]))
     return np.unique(np.concatenate(begins)), edges[np.isfinite(edges)]
 

@@ -259,6 +259,7 @@ def storable(scene: Scene) -> Scene:
         return scene
     # Asperities may have felt lower separations than those asked.
     low, high = extent(scene.grading, scene.heights, (*scene.separations, scene.lowest))
+    high = max(high, scene.highest)  # as `moduli` asks of series
     parts = {each.name: getattr(scene, each.name) for each in dataclasses.fields(scene)}
     if not scene.law.is_data:
         parts["contact"] = dataclasses.replace(scene.contact, law=_resolved_law(scene, low, high))

@@ -86,9 +86,5 @@ class Film(ContactLaw):
 
     name = "by hand: film"
 
-    @property
-    def finest(self):
-        return self.b**2
-
     def radius(self, piece, y, e):  # noqa: ARG002
         return y * y / (y + self.b) + 0 * e

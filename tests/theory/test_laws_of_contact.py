@@ -65,7 +65,6 @@ def test_coatings_formulas_are_the_printed_ones(poisson, t):
 def test_coating_goes_on_below_first_touch():
     """Its even and odd parts: along a polynomial through both sides, as analytic functions must."""
     law = Coated(ratio=3.0, reduced_thickness=0.5)
-    assert law.finest == 0.25
     y = np.polynomial.chebyshev.chebpts1(40) * 0.2
     check = np.linspace(-0.19, 0.19, 77)
     for formula in (law.load, law.stiffness, law.radius):

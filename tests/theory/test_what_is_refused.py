@@ -127,7 +127,7 @@ REFUSED = [
     ("c0=1e-06", lambda: PowerLawGraded(0.5, 1e-6).load(0, ONE, ONE)),
     ("thickness = None, reduced_thickness = None", lambda: Coated(ratio=2.0)),
     ("ratio = 0.0", lambda: Coated(ratio=0.0, thickness=1e-6)),
-    ("thickness=1e-06", lambda: Coated(ratio=2.0, thickness=1e-6).finest),
+    ("thickness=1e-06", lambda: Coated(ratio=2.0, thickness=1e-6).load(0, ONE, ONE)),
     ("conductivities = (1.0, -1.0)", lambda: analytic.Film(conductivities=(1.0, -1.0))),
     ("resistivity = 0.0", lambda: analytic.Film(0.0, film_resistance=1.0)),
     ("work = None, pull_off = None", lambda: JohnsonKendallRoberts()),

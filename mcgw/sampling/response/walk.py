@@ -114,8 +114,11 @@ class _Walk(NamedTuple):
             low = rows.low[row[begins]]  # rows that begin inside a cell
             inside = low[low != nodes.start[node[begins]]].min(initial=inside)
             for root, which, c, needed in self.starts(node[begins], row[begins]):
-                found.append((node[begins[which]], row[begins[which]], root, c))
-                np.maximum.at(rooted if root else plain, node[begins[which]], needed)
+                at = node[begins[which]]
+                found.append((at, row[begins[which]], root, c))
+                np.maximum.at(rooted if root else plain, at, needed)
+                wide = nodes.end[at] - nodes.start[at] > 2 * SMALLEST
+                unresolved.append(nodes.start[at[(needed > _MOST_IN_CELL) & wide]])
             node, row = (part[left & nodes.parent[node]] for part in (node, row))
             node, row = np.concatenate([tree.left[node], tree.right[node]]), np.concatenate([row, row])
         of_node, of_row, root, c = zip(*found, strict=True)
