@@ -25,11 +25,12 @@ from mcgw.sampling.direct import Direct
 from mcgw.sampling.expected import name_of
 from mcgw.sampling.response.response import parts_of, response_of
 from mcgw.sampling.response.walk import UnresolvedError
+from mcgw.scene.ensemble import PROMISES
 from mcgw.scene.scene import Scene, storable
 
 _GAUSSIAN, _WORTH = 300, 1.5  # asperities that a crowded cell takes as long as; times that much faster
 _CUTS = 16  # in four, of a cell on which the modulus, and the law of contact under it, are not resolved
-_MANY = 2**15  # cells: of a law that changes by more than so many resolve there is nothing to be had
+_TIMES = 256  # more cells than at first: of a law that changes as fast there is no end
 _SAME = 1e-10  # a kink so near to an edge was found, not told: no value is off by more
 
 
@@ -39,7 +40,8 @@ def sampler_of(scene: Scene) -> Sampler:
     Parameters
     ----------
     scene : Scene
-        ``sampler = "auto"`` takes the cheapest exact one. A grading that is a Python function is resolved.
+        ``sampler = "auto"`` takes the cheapest exact one; ``tail`` serves where no cells resolve the laws. A
+        grading that is a Python function is resolved.
 
     Returns
     -------
@@ -53,7 +55,7 @@ def sampler_of(scene: Scene) -> Sampler:
             return _perhaps_crowded(scene)
         return _MAKERS[name](scene)
     except UnresolvedError:
-        if scene.sampler != "auto":
+        if not PROMISES[name].one_by_one:
             raise
         return tail_of(scene)
 
@@ -90,7 +92,7 @@ def _counted(name: str, scene: Scene, mesh: Mesh) -> Counted:
 
     Its response is for all that moments can tell; contacts are counted.
     """
-    names, cuts = _summed(scene.quantities), 0
+    names, cuts, most = _summed(scene.quantities), 0, _TIMES * mesh.size
     while True:
         try:
             if scene.summits is None or not names:
@@ -103,7 +105,7 @@ def _counted(name: str, scene: Scene, mesh: Mesh) -> Counted:
             assert table is not None
             return Counted(name, scene, mesh, response, WithRadii(mesh, table, response), table)
         except UnresolvedError as error:
-            if cuts == _CUTS or mesh.size > _MANY:
+            if cuts == _CUTS or mesh.size > most:
                 raise
             mesh, cuts = cut(scene, mesh, error.starts), cuts + 1
 

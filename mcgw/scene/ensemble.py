@@ -36,6 +36,12 @@ PROMISES = {
 }
 SAMPLERS = tuple(PROMISES)
 
+
+def promise_of(sampler: str) -> Promise:
+    """Return what a sampler promises; one of another name, all."""
+    return PROMISES.get(sampler, PROMISES["auto"])
+
+
 _KNOWN_TO = "give a number > 0 and at most 0.1; beyond that there are too few contacts for an interval"
 _SHARE = Number("1", high=0.1, advice=_KNOWN_TO)
 _SHARES = List(
@@ -64,6 +70,7 @@ class Sampling:
         Seed of the random numbers, 0 to 2^64 - 1. Default: a random one, which is recorded.
     sampler : {"auto", "direct", "tail", "cells", "aggregate"}, optional
         How surfaces are drawn; "auto" (default) uses the fastest exact way of "cells", "tail", "direct".
+        Where no cells resolve grading and law, "cells" draws as "tail" does.
     keep : {"sums", "statistics"}, optional
         "sums" (default); "statistics": no surfaces, only mean, deviation and covariance, of any number of
         surfaces in the same memory.

@@ -20,7 +20,7 @@ from analytic.quadrature import extent
 from analytic.resolution import resolved
 from mcgw.formats.table import Shown, Table
 from mcgw.scene.contact import Contact, Joint, interaction_mistakes, law_mistakes
-from mcgw.scene.ensemble import PROMISES, Sampling
+from mcgw.scene.ensemble import Sampling, promise_of
 from mcgw.scene.fields import Fields, LeftOut
 from mcgw.scene.laws import LAWS, Graded
 from mcgw.scene.measured import MOMENTS, Fitted
@@ -183,7 +183,7 @@ class Scene(Fields, Shown):
 
     def drawn_by(self, sampler: str) -> Scene:
         """Return the scene that says by which sampler it was drawn, where it left the choice to ``auto``."""
-        if self.accuracy and not PROMISES.get(sampler, PROMISES["auto"]).one_by_one:
+        if self.accuracy and not promise_of(sampler).one_by_one:
             return self  # its crowds follow from what may be spent
         return with_sampling(self, sampler=sampler)
 

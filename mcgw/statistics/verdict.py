@@ -19,7 +19,7 @@ from analytic.arrays import Array, Marks
 from analytic.curvature import MEAN_CURVATURE
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
-from mcgw.scene.ensemble import PROMISES
+from mcgw.scene.ensemble import promise_of
 from mcgw.scene.scene import Scene
 
 FALSE_ALARM = 1e-3
@@ -182,7 +182,7 @@ def distances(ensemble: Ensemble) -> list[tuple[float, str, float]]:
     Of each quantity at eight separations at most. Laws of listed summits have a step for each of them.
     """
     scene, one_radius = ensemble.scene, ensemble.scene.summits is None
-    kept = scene.keep != "statistics" and PROMISES.get(ensemble.sampler, PROMISES["auto"]).one_by_one
+    kept = scene.keep != "statistics" and promise_of(ensemble.sampler).one_by_one
     known = not isinstance(scene.heights, MeasuredHeights) and (scene.hertzian or one_radius)
     if not (kept and known):
         raise ValueError(

@@ -58,10 +58,9 @@ def test_what_cannot_be_drawn_is_refused_when_it_is_made(scene_of, asked, line):
         scene_of(**asked)
 
 
-@pytest.mark.parametrize("wish", [{}, {"accuracy": 1e-2}])
+@pytest.mark.parametrize("wish", [{}, {"sampler": "cells"}, {"accuracy": 1e-2}])
 def test_what_no_cell_resolves_is_drawn_one_by_one(scene_of, monkeypatch, wish):
-    """Cells alone say what to do instead."""
     monkeypatch.setattr("mcgw.sampling.samplers._CUTS", 0)
     assert sampler_of(scene_of(**LAWS["powers"], **wish)).name == "tail"
-    with pytest.raises(UnresolvedError, match=r'not resolved near s = .*; use sampler = "tail"'):
-        sampler_of(scene_of(**LAWS["powers"], sampler="cells"))
+    with pytest.raises(UnresolvedError, match=r'not resolved near s = .*; use sampler = "auto"'):
+        sampler_of(scene_of(**LAWS["powers"], sampler="aggregate"))

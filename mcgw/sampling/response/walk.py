@@ -44,7 +44,7 @@ class UnresolvedError(ValueError):
         self.starts = starts
         super().__init__(
             f"not resolved near s = {starts[0]:.6g}: the modulus there, or a contact law, changes too "
-            'fast for cells; use sampler = "tail" or a smoother grading'
+            'fast for cells; use sampler = "auto" or a smoother grading'
         )
 
 
