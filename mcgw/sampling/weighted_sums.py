@@ -20,12 +20,12 @@ from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.kernels import BUFFER, TOGETHER, add_weighted, unfold
-from mcgw.sampling.moments import Layout, OneByOne, add_compensated, in_runs_of_cells
+from mcgw.sampling.moments import Layout, OneByOne, in_runs_of_cells
 from mcgw.sampling.own_radii import Families, RadiusTable, root_ratio
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, centred
 
 _MOST = 32  # sums of one kind: there are 21
-# A thread's workspace: x, sqrt(u), two uniforms of the radius, weights, factors; then sums and their carries
+# A thread's workspace: x, sqrt(u), two uniforms of the radius, weights, factors; then sums
 _ROOT, _FINE, _COARSE, _WEIGHT, _FACTOR, _SUMS, _WORDS = (k * BUFFER for k in range(1, 8))
 _PRICE = 5.0  # of a summit with its radius, in asperities
 
@@ -62,14 +62,14 @@ def _weigh(w: Any, n: Any, edge: Any, series: Any, table: Any) -> Any:
 
 @njit(cache=True)
 def _sum_cells(who: Any, kinds: Any, mesh: Any, table: Any, counts: Any, bounds: Any, moments: Any) -> None:
-    """Sum a run of cells, all surfaces of one after the other: 32 sums for each kind, and their carries."""
+    """Sum a run of cells, all surfaces of one after the other: 32 sums for each kind."""
     (seed, first), (starts, orders, squares), (edges, series) = who, kinds, mesh
     w = np.ones(_WORDS)
     surfaces = counts.shape[1]
     for at in range(bounds[0], bounds[1]):
         cell, surface = at // surfaces, at % surfaces
         n, many = counts[cell, surface], orders[cell]
-        for k in range(_SUMS, _SUMS + 3 * _MOST * many.size):
+        for k in range(_SUMS, _SUMS + _MOST * many.size):
             w[k] = 0.0
         for begin in range(0, n, BUFFER):
             m = min(BUFFER, n - begin)
@@ -79,16 +79,12 @@ def _sum_cells(who: Any, kinds: Any, mesh: Any, table: Any, counts: Any, bounds:
             whole = _weigh(w, m, edges[cell], series[cell], table)
             for kind in range(many.size):
                 if many[kind]:
-                    sums = _SUMS + 3 * _MOST * kind
                     _factor(w, whole, squares[kind // 2], kind % 2)
-                    add_weighted(w, whole, 0, many[kind], _FACTOR, sums)
-                    if n > BUFFER:
-                        add_compensated(w[sums + _MOST : sums + 3 * _MOST], w, sums, _MOST)
+                    add_weighted(w, whole, 0, many[kind], _FACTOR, _SUMS + _MOST * kind)
         for kind in range(many.size):
-            sums, row = _SUMS + 3 * kind * _MOST, starts[cell, kind]
+            sums, row = _SUMS + _MOST * kind, starts[cell, kind]
             for j in range(many[kind]):
-                totals = w[sums + _MOST + j] + w[sums + 2 * _MOST + j]  # of more than fit the buffer
-                moments[row + j, surface] = w[sums + j] + totals
+                moments[row + j, surface] = w[sums + j]
             unfold(moments, row, many[kind], surface, surface + 1)
 
 
