@@ -89,9 +89,9 @@ class HeightRule:
         ends = [np.concatenate([regular, resolved_breaks(grading, start, top), lowest])] * ratios.size
         if cuts is not None:
             ends = [np.append(*each) for each in zip(ends, cuts(ratios).T, strict=True)]
-        for branch in branches:  # at each separation, which has the radii in turn
+        for branch in [branch for branch in branches if not branch.one_piece]:
             branch = branch if own is None else branch.with_radii(ratios)
-            found = branch.regimes(grading, np.repeat(h, ratios.size), start, top)
+            found = branch.regimes(grading, np.repeat(h, ratios.size), start, top)  # the radii in turn
             some, bounds = found.separation % ratios.size, np.stack([found.low, found.high])
             ends = [np.append(each, bounds[:, some == k]) for k, each in enumerate(ends)]
         ends = [np.unique(np.clip(each, start, top)) for each in ends]

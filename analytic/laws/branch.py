@@ -72,6 +72,11 @@ class Branch:
         """Return the branches of some quantities, each once."""
         return tuple(dict.fromkeys(self.of(name) for name in quantities))
 
+    @property
+    def one_piece(self) -> bool:
+        """Whether one formula holds from the separation upwards."""
+        return self.unload_from is None and not self.law.limits(np.ones(1)).size
+
     def with_radii(self, ratios: Array | None) -> Self:
         """Return that of summits whose radii are these multiples of the surface's, each in its own units."""
         return replace(self, ratios=ratios)

@@ -65,7 +65,7 @@ class Layout:
 
 
 @njit(inline="always")
-def _add_compensated(totals: Any, w: Any, first: Any, size: Any) -> None:
+def add_compensated(totals: Any, w: Any, first: Any, size: Any) -> None:
     """Neumaier's sums: `size` totals, then what rounding dropped from each. Numbers of `w` move there."""
     for j in range(size):
         total, term = totals[j], w[first + j]
@@ -92,7 +92,7 @@ def _sum_cell(
             w[i] = 1.0
         add_uniforms(w, some + filled, filled, plain, rooted)
         if n > _PIECE and ((first + BUFFER) % _PIECE == 0 or first + some == n):
-            _add_compensated(carries, w, PLAIN, WORDS - PLAIN)
+            add_compensated(carries, w, PLAIN, WORDS - PLAIN)
     for k in range(WORDS - PLAIN if n > _PIECE else 0):
         w[PLAIN + k] = carries[k] + carries[WORDS - PLAIN + k]
     w[PLAIN] = n
