@@ -136,9 +136,9 @@ class JohnsonKendallRoberts(_Adhesive):
         hold(pulled, pulled=True)
         return pulled
 
-    def residual(self, e: Array) -> Any:
-        """Return the penetration at which contact is lost."""
-        return -self.stretch(e) if self.pulled else 0.0
+    def left(self, above: Array, e: Array) -> Any:
+        """Return the penetration left until contact is lost."""
+        return above + self.stretch(e) if self.pulled else above
 
     def _z(self, y: Any, e: Array) -> Any:
         q = y * np.sqrt(3 / self.stretch(e))

@@ -118,7 +118,7 @@ class Branch:
     ) -> Array:  # fmt: skip
         """Return what contacts of a piece add at heights above the separations, over scales of own radii."""
         law = self._law(self.deepest(h, above))
-        y = sign * np.sqrt(np.maximum(above - law.residual(e), 0.0))  # formulas go on to negative roots
+        y = sign * np.sqrt(np.maximum(law.left(above, e), 0.0))  # formulas go on to negative roots
         shape = np.broadcast_shapes(np.shape(y), np.shape(e))
         known: dict[str, Callable[[Any], Any]] = {
             "load": lambda y: law.load(piece, y, e),
@@ -165,7 +165,7 @@ class Branch:
     def left(self, h: Array, above: Array, e: Array) -> Array:
         """Penetration left until contact is lost, whose root the formulas take; -inf without any before."""
         deepest = self.deepest(h, above)
-        return np.where(deepest >= 0, above - self._law(deepest).residual(e), -np.inf)
+        return np.where(deepest >= 0, self._law(deepest).left(above, e), -np.inf)
 
     def pieces(self, h: Array, above: Array, e: Array) -> Ints:
         """Which formula holds at heights `above` the separations, -1 without contact."""

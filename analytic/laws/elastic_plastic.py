@@ -162,10 +162,9 @@ class EtsionKligermanKadin(ContactLaw):
     def __init__(self, loading: Any, deepest: Any) -> None:
         self.loading, self.deepest = loading, deepest
 
-    def residual(self, e: Array) -> Any:
-        """Return the penetration at which contact is lost."""
-        log = np.log(np.maximum(self._x(e), 1.0))
-        return self.deepest * np.expm1(-0.28 * log) * np.expm1(-0.69 * log)
+    def left(self, above: Array, e: Array) -> Any:
+        """Return the penetration left until contact is lost."""
+        return above - self.deepest + self._springs_back(e)
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Return the load of a contact."""
@@ -175,12 +174,18 @@ class EtsionKligermanKadin(ContactLaw):
         """Return the radius of a contact; its square is the area over pi R sigma."""
         return super().radius(0, y, e) if piece == 0 else self._left("radius", 0.5, -0.12, piece, y, e)
 
+    def _springs_back(self, e: Array) -> Any:
+        """Return what of the deepest penetration does: delta_max - delta_res, to all its digits."""
+        log = np.log(np.maximum(self._x(e), 1.0))
+        a, b = np.exp(-0.28 * log), np.exp(-0.69 * log)
+        return self.deepest * (a + b - a * b)
+
     def _x(self, e: Array) -> Any:
         """Deepest penetration over the critical one."""
         return np.square(self.loading.u(np.sqrt(self.deepest), e))
 
     def _left(self, what: str, power: float, fall: float, piece: int, y: Any, e: Array) -> Any:
         """Return what is left of that at the deepest penetration: a power of the share that springs back."""
-        share = y * y / (self.deepest - self.residual(e))
+        share = y * y / self._springs_back(e)
         most = getattr(self.loading, what)(piece, np.sqrt(self.deepest), e)
         return most * share ** (power * self._x(e) ** fall)

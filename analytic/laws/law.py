@@ -106,9 +106,9 @@ class ContactLaw:
             )
         return self
 
-    def residual(self, e: Array) -> Any:
-        """Return the penetration at which contact is lost on unloading."""
-        return 0.0
+    def left(self, above: Array, e: Array) -> Any:
+        """Return the penetration left until contact is lost, of one that is so much above the separation."""
+        return above
 
 
 @dataclass(frozen=True)

@@ -82,10 +82,10 @@ def mesh_of(scene: Scene, given: Sequence[float] = (), *, split: bool = True) ->
 
 
 def cut(scene: Scene, mesh: Mesh, starts: Array) -> Mesh:
-    """Cut the cells that begin at these heights in four, or towards where contacts are lost."""
+    """Cut the cells that begin at these heights, finer at their start, or towards where contacts are lost."""
     cell = np.searchsorted(mesh.edges, starts)
     low, high = mesh.edges[cell], mesh.edges[cell + 1]
-    parts, width = [(low + (high - low) * part) for part in (0.25, 0.5, 0.75)], high - low
+    parts, width = [(low + (high - low) * part) for part in (1 / 16, 0.25, 0.5, 0.75)], high - low
     for end in np.flatnonzero(np.isin(high, losses(scene, *mesh.range)) & (width > 2 * SMALLEST)):
         nearer = width[end] * 2.0 ** -np.arange(1, math.floor(math.log2(width[end] / SMALLEST)) + 1)
         parts.append(high[end] - nearer)

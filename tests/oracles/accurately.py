@@ -89,7 +89,7 @@ def _of_spots(scene, radius):
 
 def _back(_, law, name, piece, d, most, e):
     """After lift-off nothing."""
-    found, left = np.zeros(len(d)), d - law.unloading(most).residual(e)
+    found, left = np.zeros(len(d)), law.unloading(most).left(d, e)
     held = left > 0
     way, y, e = law.unloading(most[held]), np.sqrt(left[held]), e[held]
     radius = way.radius(piece, y, e)

@@ -103,7 +103,7 @@ def test_stiffness_after_the_turn_is_not_the_slope():
     """A spot of radius a is stiff by 2 E* a; the fit's own slope there differs by some per cent."""
     d = np.array([0.3])
     back = KOGUT.unloading(d)
-    y = np.sqrt(d - back.residual(ONE))
+    y = np.sqrt(back.left(d, ONE))
     slope = slope_in_root(lambda v: back.load(1, v, ONE), y)
     assert back.stiffness(1, y, ONE) == pytest.approx(KOGUT.radius(1, np.sqrt(d), ONE), rel=1e-14)
     assert slope / 1.5 != pytest.approx(back.stiffness(1, y, ONE), rel=0.01)
@@ -112,7 +112,7 @@ def test_stiffness_after_the_turn_is_not_the_slope():
 def test_without_stiffness_nothing_is_left_and_nothing_warns():
     back, e = KOGUT.unloading(0.3), np.array([0.0, 1.0])
     for piece in (0, 1, 2, 3):
-        assert np.all(np.isfinite(back.residual(e)))
+        assert np.all(np.isfinite(back.left(0.3, e)))
         assert back.load(piece, np.array(0.2), e)[0] == 0
         assert np.all(np.isfinite(back.radius(piece, np.array(0.2), e)))
 

@@ -84,8 +84,8 @@ class Rows:
         for kind in np.unique(self.kind):
             rows = np.flatnonzero(self.kind == kind)
             rows = rows[np.argsort(self.h[rows], kind="stable")]
-            rooted = bool(self.rooted[rows].any())
-            first = np.searchsorted(starts, self.low[rows], "right" if rooted else "left")
+            first = np.searchsorted(starts, self.low[rows])
+            first += self.rooted[rows] & np.isin(self.low[rows], starts)  # in part only on the cell it begins
             end = np.searchsorted(starts, self.high[rows])
             endless = np.flatnonzero(end == starts.size)
             highest = np.full(starts.size + 1, -1)
