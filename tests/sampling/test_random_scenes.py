@@ -5,7 +5,7 @@ from oracles.random_scenes import judged
 
 # Bins of summits of any radius; balances whose grading was searched for each bound, or slopes asked again;
 # cells without end; quantiles that were searched one by one. And rounding at the turn of deep contacts.
-ONCE_SLOW = (10250, 10543, 32123, 60029, 60425, 70093)
+ONCE_SLOW = (10250, 10543, 32123, 60029, 60425, 70093, 70593)
 # Series to the highest heights; starts of sticking contacts; powers of small heights on a wide node; cells
 # from which on contacts are elastic again.
 ONCE_WRONG = (60354, 60413, 60522, 70294)

@@ -54,7 +54,7 @@ def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Int
     UnresolvedError if a row is not resolved on some cells, ValueError if one begins or ends inside a cell.
     """
     of_nodes = nodes.even, nodes.noise, nodes.crowd, nodes.start, nodes.end
-    of_rows = rows.graded, rows.total, rows.low, rows.high, rows.rough, rows.lost
+    of_rows = rows.graded, rows.total, rows.low, rows.high, rows.rough, rows.lost, rows.h
     series = _Walk(tree, nodes, rows, (of_nodes, of_rows, nodes.accuracy))
     entries, plain, rooted, unresolved, inside = series.entries()
     if unresolved.size:
@@ -202,7 +202,7 @@ def _all_series(
     c, count : ndarray
         Where the series, of shape (pairs, order), zero beyond those kept, and the numbers are written.
     """
-    (even, noise, crowd, start, end), (graded, total, low, high, rough, lost), accuracy = limits
+    (even, noise, crowd, start, end), (graded, total, low, high, rough, lost, h), accuracy = limits
     transform, times_u = tables
     order = c.shape[1]
     multiply(values, transform, c)
@@ -212,9 +212,9 @@ def _all_series(
             tail += abs(c[k, i])
             values[k, i] = tail
         if rough[r] and math.isfinite(low[r]):
-            digits = max(digits, _lost_digits(start[n], low[r], end[n] - start[n]))
+            digits = max(digits, _lost_digits(start[n], low[r], end[n] - start[n], h[r]))
         if lost[r]:
-            digits = max(digits, _lost_digits(end[n], high[r], end[n] - start[n]))
+            digits = max(digits, _lost_digits(end[n], high[r], end[n] - start[n], h[r]))
         enough = accuracy * max((even[n] if graded[r] else 1.0) * tail, total[r] / crowd[n])
         alone, kept = max(enough, digits * tail), max(enough / (_NODES if of_many else 1), digits * tail)
         needed = order
@@ -230,13 +230,13 @@ def _all_series(
 
 
 @njit()
-def _lost_digits(edge: Any, end: Any, width: Any) -> Any:
-    """Return what the last digit of a height makes of a power of its distance from the end of a row.
+def _lost_digits(edge: Any, end: Any, width: Any, h: Any) -> Any:
+    """Return what last digits make of a power of a height's distance from the end of a row at separation h.
 
     On a node that is wider than this distance the power is much larger elsewhere, and errors with it.
     """
     distance = abs(edge - end)
-    lost = _DIGITS * np.spacing(abs(edge)) / max(distance, width)
+    lost = _DIGITS * np.spacing(max(abs(edge), abs(edge - h))) / max(distance, width)
     return min(lost, 1.0) if distance > 0 else 0.0
 
 
