@@ -163,8 +163,10 @@ class EtsionKligermanKadin(ContactLaw):
         self.loading, self.deepest = loading, deepest
 
     def left(self, above: Array, e: Array) -> Any:
-        """Return the penetration left until contact is lost."""
-        return above - self.deepest + self._springs_back(e)
+        """Return the penetration left until contact is lost, exact where little or nearly all stays."""
+        log = np.log(np.maximum(self._x(e), 1.0))
+        stays = self.deepest * np.expm1(-0.28 * log) * np.expm1(-0.69 * log)  # delta_res
+        return np.where(stays < self.deepest / 2, above - stays, above - self.deepest + self._springs_back(e))
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Return the load of a contact."""
