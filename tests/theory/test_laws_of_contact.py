@@ -104,6 +104,7 @@ def test_stiffness_after_the_turn_is_not_the_slope():
     d = np.array([0.3])
     back = KOGUT.unloading(d)
     y = np.sqrt(back.left(d, ONE))
+    assert KogutEtsion(critical=3e-60).unloading(d).left(d, ONE) == pytest.approx(0.3 * 1e59**-0.28, rel=1e-9)
     slope = slope_in_root(lambda v: back.load(1, v, ONE), y)
     assert back.stiffness(1, y, ONE) == pytest.approx(KOGUT.radius(1, np.sqrt(d), ONE), rel=1e-14)
     assert slope / 1.5 != pytest.approx(back.stiffness(1, y, ONE), rel=0.01)
