@@ -230,7 +230,8 @@ class MeanModel:
 
     def _in_parts(self, h: ArrayLike, function: Callable[[Array], Array]) -> Array:
         """Return what a function gives for a few separations at a time, which may share a rule."""
-        most = 1 if isinstance(self.heights, MeasuredHeights) else 12
+        most = 48 if self.ways.one_piece and self.curvature is None else 12
+        most = 1 if isinstance(self.heights, MeasuredHeights) else most
         flat = np.ravel(np.asarray(h, dtype=np.float64))
         if not np.all(np.isfinite(flat)):
             raise ValueError("h: every separation must be finite")

@@ -98,18 +98,28 @@ class Branch:
         (quantities, *common shape). With `slope` the derivatives by the penetration instead, within a piece.
         """
         h, s, e = (np.asarray(x, dtype=np.float64) for x in (h, s, e))
+        names = [quantity_of(name).base for name in quantities]
+        if self.one_piece:
+            found = [self.value(name, 0, h, s - h, e, slope=slope) for name in names]
+            result = np.where(s - h > 0, found, 0.0)
+        else:
+            result = self._of_pieces(names, h, s, e, slope)
+        if self.ratios is not None:
+            for k, quantity in enumerate(quantities):
+                result[k] *= self.ratios ** quantity_of(quantity).radius
+        return result
+
+    def _of_pieces(self, names: Sequence[str], h: Array, s: Array, e: Array, slope: bool) -> Array:
+        """Return `terms` where several formulas hold."""
         pieces = self.pieces(h, s - h, e)
         at = [np.broadcast_to(x, pieces.shape) for x in (h, s - h, e)]
-        result = np.zeros((len(quantities), *pieces.shape))
+        result = np.zeros((len(names), *pieces.shape))
         for piece in range(int(pieces.max(initial=-1)) + 1):
             here = pieces == piece
             if here.any():
                 some, there = self.of_some(here), [x[here] for x in at]
-                for k, quantity in enumerate(quantities):
-                    result[k, here] = some.value(quantity_of(quantity).base, piece, *there, slope=slope)
-        if self.ratios is not None:
-            for k, quantity in enumerate(quantities):
-                result[k] *= self.ratios ** quantity_of(quantity).radius
+                for k, name in enumerate(names):
+                    result[k, here] = some.value(name, piece, *there, slope=slope)
         return result
 
     def value(
