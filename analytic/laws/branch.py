@@ -100,7 +100,8 @@ class Branch:
         h, s, e = (np.asarray(x, dtype=np.float64) for x in (h, s, e))
         names = [quantity_of(name).base for name in quantities]
         if self.one_piece:
-            found = [self.value(name, 0, h, s - h, e, slope=slope) for name in names]
+            with np.errstate(invalid="ignore"):  # of moduli < 0 where nothing touches
+                found = [self.value(name, 0, h, s - h, e, slope=slope) for name in names]
             result = np.where(s - h > 0, found, 0.0)
         else:
             result = self._of_pieces(names, h, s, e, slope)
