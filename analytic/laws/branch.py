@@ -11,6 +11,7 @@ several intervals if it falls faster than heights rise, as that of yielding does
 from collections.abc import Callable, Iterable, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -72,7 +73,7 @@ class Branch:
         """Return the branches of some quantities, each once."""
         return tuple(dict.fromkeys(self.of(name) for name in quantities))
 
-    @property
+    @cached_property
     def one_piece(self) -> bool:
         """Whether one formula holds from the separation upwards."""
         return self.unload_from is None and not self.law.limits(np.ones(1)).size

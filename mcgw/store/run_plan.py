@@ -254,7 +254,7 @@ class Plan:
         except (StoreError, KeyError):
             return None
         rows, its_own = self.reducers[0].rows, run == self.identity and path.name == span.file_name
-        of_more = not self.axes and span.n == rows  # the scene with more surfaces
+        of_more = not self.axes and span.n == rows and span.first % rows == 0  # the scene with more surfaces
         return (span, seconds) if its_own and (span in self.blocks or of_more) else None
 
     def shard_path(self, span: Span) -> Path:

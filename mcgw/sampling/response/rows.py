@@ -84,8 +84,8 @@ class Rows:
         for kind in np.unique(self.kind):
             rows = np.flatnonzero(self.kind == kind)
             rows = rows[np.argsort(self.h[rows], kind="stable")]
-            first = np.searchsorted(starts, self.low[rows])
-            first += self.rooted[rows] & np.isin(self.low[rows], starts)  # in part only on the cell it begins
+            sides = (np.searchsorted(starts, self.low[rows], side) for side in ("right", "left"))
+            first = np.where(self.rooted[rows], *sides)  # on the cell where a root begins it is in parts
             end = np.searchsorted(starts, self.high[rows])
             endless = np.flatnonzero(end == starts.size)
             highest = np.full(starts.size + 1, -1)
